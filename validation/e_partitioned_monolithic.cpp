@@ -1,7 +1,7 @@
 #include "cases.h"
 #include "faults.h"
 #include "palpate/core/error.h"
-#include "palpate/experiments/exchange.h"
+#include "palpate/experiments/exchange_period_study.h"
 #include "palpate/loop/run.h"
 
 // Problem: a round tool presses a soft block, with the handle on a path with two continuous derivatives.

@@ -100,7 +100,7 @@ TaskFolder::TaskFolder(const ArrayArguments& arguments, Use use)
     store_ = experiments::ResultStore::element(use_.folder, arguments.tasks);
     return;
   }
-  lock_ = store::ResultFolder(use_.folder);
+  lock_ = store::FolderLock(use_.folder);
   const bool reads = use_.reads || arguments.slurm;
   if (use_.fresh || !reads) store_ = experiments::ResultStore::here(use_.folder, use_.fresh);
   if (!reads) return;
@@ -146,7 +146,7 @@ std::string TaskFolder::job_of(experiments::Experiment& experiment,
     }
   job.elements = experiments::elements_of(groups, static_cast<std::size_t>(arguments_.chunk),
                                           experiments::max_array_size());
-  store::ResultFolder::make((fs::path(folder()) / "slurm").string());
+  store::FolderLock::make((fs::path(folder()) / "slurm").string());
   const std::string script = (fs::path(folder()) / (job.command + ".sbatch")).string();
   store::write_atomically(script, experiments::sbatch_script(job));
   std::string number = experiments::submit(script);

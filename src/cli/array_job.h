@@ -4,7 +4,7 @@
 
 #include "experiments/engine.h"
 #include "experiments/slurm.h"
-#include "store/result_folder.h"
+#include "store/folder_lock.h"
 
 namespace CLI {
 class App;
@@ -67,7 +67,7 @@ class TaskFolder {
   bool submit(experiments::Experiment& experiment, const std::vector<std::vector<std::size_t>>& groups);
   const ArrayArguments& arguments_;
   Use use_;
-  store::ResultFolder lock_;
+  store::FolderLock lock_;
   experiments::ResultStore store_;
   std::string lost_;
   bool left_ = false;  ///< Submitted without waiting.

@@ -39,7 +39,7 @@ ExportDraft::ExportDraft(const std::string& folder)
     : folder_(folder),
       draft_(folder_ / fmt::format(".export-{}.part", getpid())),
       made_(first_missing(folder_)) {
-  lock_ = store::ResultFolder(folder);
+  lock_ = store::FolderLock(folder);
   std::error_code error;
   fs::create_directory(draft_, error);
   if (error)

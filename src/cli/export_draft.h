@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "store/result_folder.h"
+#include "store/folder_lock.h"
 
 namespace palpate::cli {
 
@@ -32,7 +32,7 @@ class ExportDraft {
   std::filesystem::path folder_, draft_;
   std::filesystem::path made_;  ///< Uppermost folder that the constructor created; empty if all existed
   std::vector<std::string> names_;
-  store::ResultFolder lock_;
+  store::FolderLock lock_;
 };
 
 }  // namespace palpate::cli

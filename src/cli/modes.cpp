@@ -17,7 +17,7 @@
 #include "report/table.h"
 #include "scene_options.h"
 #include "store/csv.h"
-#include "store/result_folder.h"
+#include "store/folder_lock.h"
 
 namespace palpate::cli {
 namespace {
@@ -95,7 +95,7 @@ int modes(const ModesArguments& arguments) {
   print_modes(found);
   const std::string folder =
       arguments.folder.empty() ? default_folder("modes-" + short_name(description)) : arguments.folder;
-  const store::ResultFolder mine(folder);
+  const store::FolderLock mine(folder);
   const std::filesystem::path base(folder);
   MissingOutputs missing;
   write_table(found, (base / "modes.csv").string());

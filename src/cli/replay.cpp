@@ -22,7 +22,7 @@
 #include "recorded_scene.h"
 #include "session/run_files.h"
 #include "store/atomic_file.h"
-#include "store/result_folder.h"
+#include "store/folder_lock.h"
 
 namespace palpate::cli {
 namespace {
@@ -99,7 +99,7 @@ int replay(const ReplayArguments& arguments) {
   std::error_code none;
   if (std::filesystem::equivalent(folder, arguments.run, none))
     fail("{}: the replay would overwrite the run that it replays; choose another folder with -o DIR", folder);
-  const store::ResultFolder mine(folder);
+  const store::FolderLock mine(folder);
   session::remove_run_files(description, folder);
   Ticks ticks(records.size());
   loop::RunFigures figures;

@@ -8,7 +8,7 @@
 #include "cli/program.h"
 #include "commands.h"
 #include "report/run_report.h"
-#include "store/result_folder.h"
+#include "store/folder_lock.h"
 
 namespace palpate::cli {
 namespace {
@@ -23,8 +23,7 @@ int report(const ReportArguments& arguments) {
   std::filesystem::path page = arguments.file;
   if (page.empty())
     page = folders.size() == 1 ? folders[0] / "report.html" : std::filesystem::path("report.html");
-  if (page.has_parent_path() && !arguments.file.empty())
-    store::ResultFolder::make(page.parent_path().string());
+  if (page.has_parent_path() && !arguments.file.empty()) store::FolderLock::make(page.parent_path().string());
   const report::RunReport written = report::write_report(folders, page);
   fmt::print("written: {}\n", written.page.string());
   MissingOutputs missing;

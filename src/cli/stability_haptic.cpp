@@ -18,7 +18,7 @@
 #include "report/run_report.h"
 #include "report/table.h"
 #include "store/csv.h"
-#include "store/result_folder.h"
+#include "store/folder_lock.h"
 #include "store/summary.h"
 
 namespace palpate::cli {
@@ -35,7 +35,7 @@ std::string stiffness_text(double value) {
   return std::isinf(value) ? fmt::format("> {:g}", kStiffest) : fmt::format("{:.4g}", value);
 }
 
-std::string arm_text(const HapticLoopModel::Axis& device) {
+std::string arm_text(const OneAxisLoop::Axis& device) {
   if (!device.held()) return {};
   return fmt::format(" in an arm of {:g} kg, {:g} N s/m, {:g} N/m", device.arm_mass_kg,
                      device.arm_damping_n_s_m, device.arm_stiffness_n_m);
@@ -173,7 +173,7 @@ void keep_summary(const StabilityArguments& a, const scene::Description& d, cons
 
 int stability_haptic(const StabilityArguments& a) {
   const scene::Description description = scene_of(a.scene);
-  HapticLoopModel loop = loop_of(description);
+  OneAxisLoop loop = loop_of(description);
   loop.device.mass_kg = a.device_mass_kg.value_or(loop.device.mass_kg);
   loop.device.damping_n_s_m = a.device_damping_n_s_m.value_or(loop.device.damping_n_s_m);
   loop.delay_ticks = a.delay_ticks.value_or(loop.delay_ticks);
@@ -187,7 +187,7 @@ int stability_haptic(const StabilityArguments& a) {
 
   const std::string folder =
       a.folder.empty() ? default_folder("stability-haptic-" + short_name(description)) : a.folder;
-  const store::ResultFolder mine(folder);
+  const store::FolderLock mine(folder);
   ZWidth z;
   {
     Progress progress("haptic stability");

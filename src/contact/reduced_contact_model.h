@@ -8,7 +8,7 @@
 #include "palpate/contact/spec.h"
 #include "palpate/core/archive.h"
 #include "palpate/core/pose.h"
-#include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/linearised_contact.h"
 #include "palpate/dynamics/rigid_body.h"
 
 /// Reduced contact of soft bodies with a rigid tool, advanced by the tool's ticks between two exchanges.
@@ -117,8 +117,8 @@ class ReducedContactStepper {
   /// Returns whether a point with friction was in contact in the last linearisation.
   bool has_friction() const;
   /// Updates the friction guess with the motion of the tool at the tick's end to which the last record leads.
-  /// Returns false if the friction of the record differs from the law at that end; again() then returns an
-  /// improved record.
+  /// Returns false if the friction of the record differs from the law at that end; relinearise() then returns
+  /// an improved record.
   /// @param end  motion of the tool at the tick's end
   /// @param tolerance  accepted relative difference; 0: the default of a step (contact/friction.h)
   bool update_friction(const dynamics::RigidMotion& end, double tolerance = 0.0);

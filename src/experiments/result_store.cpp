@@ -12,8 +12,8 @@ namespace palpate::experiments {
 namespace {
 
 namespace fs = std::filesystem;
+using store::FolderLock;
 using store::ResultDb;
-using store::ResultFolder;
 using Access = ResultDb::Access;
 
 constexpr const char* kPart = ".part";
@@ -66,7 +66,7 @@ ResultStore::ResultStore() : main_(std::make_unique<ResultDb>(":memory:")) {}
 ResultStore ResultStore::here(const std::string& folder, bool fresh) {
   ResultStore out;
   out.folder_ = folder;
-  out.tasks_lock_ = ResultFolder(tasks_path(folder).string());
+  out.tasks_lock_ = FolderLock(tasks_path(folder).string());
   if (fresh) {
     remove_file(main_path(folder));
     for (const auto& entry : fs::directory_iterator(tasks_path(folder))) remove_file(entry.path());
@@ -80,7 +80,7 @@ ResultStore ResultStore::element(const std::string& folder, const std::string& l
   ResultStore out;
   out.folder_ = folder;
   const fs::path tasks = tasks_path(folder);
-  out.tasks_lock_ = ResultFolder(tasks.string(), ResultFolder::Access::kShared);
+  out.tasks_lock_ = FolderLock(tasks.string(), FolderLock::Access::kShared);
   out.element_ = (tasks / (name_of(list) + ".db")).string();
   // The element's own earlier results, after a requeue.
   if (fs::exists(out.element_)) fs::rename(out.element_, out.element_ + kPart);
@@ -98,7 +98,7 @@ ResultStore ResultStore::read(const std::string& folder, bool all_ended) {
   const bool any = !element_files(folder, all_ended).empty();
   try {
     if (any) {
-      const ResultFolder lock(tasks_path(folder).string());
+      const FolderLock lock(tasks_path(folder).string());
       ResultDb all(main_path(folder).string());
       merge_elements(folder, all_ended, all);
       if (std::error_code not_empty; all_ended) fs::remove(tasks_path(folder), not_empty);

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "experiments/task.h"
+#include "store/folder_lock.h"
 #include "store/result_db.h"
-#include "store/result_folder.h"
 
 namespace palpate::experiments {
 
@@ -40,7 +40,7 @@ class ResultStore {
 
  private:
   std::string folder_;
-  store::ResultFolder tasks_lock_;
+  store::FolderLock tasks_lock_;
   std::unique_ptr<store::ResultDb> main_;   ///< results.db; null where there is none.
   std::unique_ptr<store::ResultDb> extra_;  ///< The element's file; in read(): a copy of all, in memory.
   std::string element_;                     ///< Path of the element's complete file.

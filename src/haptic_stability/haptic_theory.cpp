@@ -42,7 +42,7 @@ enum State { kX, kV, kW, kY, kU, kQ };
 /// Advances the state of the loop by one tick.
 class Step {
  public:
-  explicit Step(const HapticLoopModel& loop)
+  explicit Step(const OneAxisLoop& loop)
       : l_(loop),
         a_(device::arm_transition(loop.device.arm(), loop.tick_s)),
         implicit_(loop.tool_integrator == "linearly-implicit-euler") {
@@ -83,17 +83,16 @@ class Step {
     out[kY] = s[kY] + h * out[kU];
   }
 
-  const HapticLoopModel& l_;
+  const OneAxisLoop& l_;
   Eigen::Matrix<double, 2, 4> a_;
   bool implicit_;
 };
 
-double loop_delay(const HapticLoopModel& loop) { return (0.5 + loop.delay_ticks) * loop.tick_s; }
+double loop_delay(const OneAxisLoop& loop) { return (0.5 + loop.delay_ticks) * loop.tick_s; }
 
 /// Returns the largest K on a geometric sequence of ratio `ratio` before the first unstable one, refined by
 /// bisection.
-double largest_stiffness(HapticLoopModel& loop, const std::function<bool()>& stable, double ratio,
-                         double width) {
+double largest_stiffness(OneAxisLoop& loop, const std::function<bool()>& stable, double ratio, double width) {
   double& k = loop.coupling_stiffness_n_m;
   double low = 0.0, high = kSoftest;
   while (k = high, stable()) {
@@ -111,27 +110,27 @@ double largest_stiffness(HapticLoopModel& loop, const std::function<bool()>& sta
 
 }  // namespace
 
-double passive_stiffness(const HapticLoopModel& loop, double damping) {
+double passive_stiffness(const OneAxisLoop& loop, double damping) {
   return std::max(0.0, (loop.device.damping_n_s_m - std::abs(damping)) / loop_delay(loop));
 }
 
-bool is_passive(const HapticLoopModel& loop) {
+bool is_passive(const OneAxisLoop& loop) {
   return loop.device.damping_n_s_m >
          loop_delay(loop) * loop.coupling_stiffness_n_m + std::abs(loop.coupling_damping_n_s_m);
 }
 
-double delay_bound_stiffness(const HapticLoopModel& loop, double damping) {
+double delay_bound_stiffness(const OneAxisLoop& loop, double damping) {
   return std::max(0.0, (loop.device.total_damping() + damping) / loop_delay(loop));
 }
 
-MatX loop_matrix(const HapticLoopModel& loop) {
+MatX loop_matrix(const OneAxisLoop& loop) {
   const Step step(loop);
   MatX A(step.size(), step.size());
   for (int i = 0; i < step.size(); ++i) A.col(i) = step(VecX::Unit(step.size(), i));
   return A;
 }
 
-double spectral_radius(const HapticLoopModel& loop) {
+double spectral_radius(const OneAxisLoop& loop) {
   // units: metres, ticks, and the coupling force; the similarity transform keeps the eigenvalues and reduces
   // rounding errors
   MatX A = loop_matrix(loop);
@@ -143,26 +142,26 @@ double spectral_radius(const HapticLoopModel& loop) {
   return Eigen::EigenSolver<MatX>(A, false).eigenvalues().cwiseAbs().maxCoeff();
 }
 
-bool is_stable(const HapticLoopModel& loop) {
+bool is_stable(const OneAxisLoop& loop) {
   // without arm and wall the loop drifts: the eigenvalue 1 of the drift may be increased by rounding
   const bool drifts =
       !loop.tool_held && loop.contact_stiffness_n_m <= 0.0 && loop.device.arm_stiffness_n_m <= 0.0;
   return spectral_radius(loop) <= 1.0 + (drifts ? 1e3 * kRounding : kRounding);
 }
 
-double spectral_stiffness(HapticLoopModel loop, double damping) {
+double spectral_stiffness(OneAxisLoop loop, double damping) {
   loop.coupling_damping_n_s_m = damping;
   return largest_stiffness(
       loop, [&] { return is_stable(loop); }, 1.1, 1e-9);
 }
 
-double simulated_stiffness(HapticLoopModel loop, double damping, double duration_s, double width) {
+double simulated_stiffness(OneAxisLoop loop, double damping, double duration_s, double width) {
   loop.coupling_damping_n_s_m = damping;
   return largest_stiffness(
       loop, [&] { return loop::simulate_virtual_wall(loop, duration_s).stable; }, 2.0, width);
 }
 
-double largest_damping(HapticLoopModel loop) {
+double largest_damping(OneAxisLoop loop) {
   loop.coupling_stiffness_n_m = kSoftest;
   double low = 0.0, high = 1e-3;
   const auto stable = [&](double damping) {

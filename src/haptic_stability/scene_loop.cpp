@@ -59,7 +59,7 @@ ToolContact patch(const ContactSpec& contact, double modulus, double area) {
 
 /// Copies the device figures to the loop. The scene specifies all figures of a simulated hand, including the
 /// arm that holds it; for another device it specifies at most the mass, by the profile.
-void add_device(const DeviceSpec& spec, HapticLoopModel& loop) {
+void add_device(const DeviceSpec& spec, OneAxisLoop& loop) {
   const device::DeviceFigures figures = device::figures_of(spec);
   loop.device.mass_kg = figures.mass;
   if (spec.type != "hand") return;
@@ -72,7 +72,7 @@ void add_device(const DeviceSpec& spec, HapticLoopModel& loop) {
 
 }  // namespace
 
-HapticLoopModel loop_of(const scene::Description& d) {
+OneAxisLoop loop_of(const scene::Description& d) {
   if (!d.tool)
     fail("{}: haptic stability: the scene has no [tool], so nothing that a hand would feel", d.name);
   if (d.exchange.scheme == "monolithic")
@@ -80,7 +80,7 @@ HapticLoopModel loop_of(const scene::Description& d) {
         "{}: haptic stability: exchange.scheme = \"monolithic\" has no ticks of its own; take "
         "--set exchange.scheme=partitioned",
         d.name);
-  HapticLoopModel loop;
+  OneAxisLoop loop;
   loop.tick_s = d.tool->tick_s;
   loop.coupling_stiffness_n_m = d.tool->coupling.stiffness_n_m;
   loop.coupling_damping_n_s_m = d.tool->coupling.damping_n_s_m;
@@ -93,7 +93,7 @@ HapticLoopModel loop_of(const scene::Description& d) {
 // A contact force turns the tool by its lever. Least stiffness: a patch of radius a lies under the centre of
 // the tool, and its springs resist a tilt: integral of k x^2 over the disc = K a^2/4. Greatest stiffness: the
 // contact lies at the farthest point of the tool, at R from its origin: K R^2.
-RotationalLoop rotational_loop_of(const scene::Description& d, const HapticLoopModel& loop,
+RotationalLoop rotational_loop_of(const scene::Description& d, const OneAxisLoop& loop,
                                   const ToolContactRange& range) {
   constexpr double kStylus = 0.05;  // lever of a device mass about its handle [m]
   constexpr double kHeld = 1e6;     // mass of a held device over the mass of the tool
@@ -105,7 +105,7 @@ RotationalLoop rotational_loop_of(const scene::Description& d, const HapticLoopM
   out.lever_m = std::sqrt(a2);
   out.loop.coupling_stiffness_n_m = d.tool->coupling.rotational_stiffness_n_m_rad / a2;
   out.loop.coupling_damping_n_s_m = d.tool->coupling.rotational_damping_n_m_s_rad / a2;
-  HapticLoopModel::Axis& device = out.loop.device;
+  OneAxisLoop::Axis& device = out.loop.device;
   if (d.device && d.device->type == "hand") {
     device = {};
     device.mass_kg = d.device->rotational_inertia_kg_m2 / a2;

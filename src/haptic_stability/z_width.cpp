@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kBisection = 2e-3;
 
-ZWidthRow by_theory(const HapticLoopModel& free, const HapticLoopModel& held, double damping) {
+ZWidthRow by_theory(const OneAxisLoop& free, const OneAxisLoop& held, double damping) {
   ZWidthRow row;
   row.damping = damping;
   row.passive = passive_stiffness(held, damping);
@@ -24,7 +24,7 @@ ZWidthRow by_theory(const HapticLoopModel& free, const HapticLoopModel& held, do
 
 /// Returns zero and a geometric sequence up to 0.97 times the damping at which the loop is unstable at the
 /// least stiffness.
-std::vector<double> dampings(const HapticLoopModel& held, int count) {
+std::vector<double> dampings(const OneAxisLoop& held, int count) {
   const double b = held.device.damping_n_s_m, last = 0.97 * largest_damping(held);
   const double first = std::min(b > 0.0 ? 0.1 * b : 1e-3 * last, 0.1 * last);
   std::vector<double> out = {0.0};
@@ -51,9 +51,9 @@ double ZWidth::largest_difference() const {
   return largest;
 }
 
-ZWidth z_width(const HapticLoopModel& loop, const ZWidthOptions& options) {
+ZWidth z_width(const OneAxisLoop& loop, const ZWidthOptions& options) {
   PALPATE_CHECK(options.rows >= 3, "{} rows", options.rows);
-  HapticLoopModel held = loop;
+  OneAxisLoop held = loop;
   held.tool_held = true;
   ZWidth out;
   for (const double damping : dampings(held, 60)) out.fine.push_back(by_theory(loop, held, damping));
@@ -83,7 +83,7 @@ std::string OperatingPoint::words(double tick_s, double scale, const std::string
                      held ? "held so" : "let go", held ? "another" : "some", limit);
 }
 
-std::vector<OperatingPoint> operating_points(HapticLoopModel loop, const ToolContactRange& range,
+std::vector<OperatingPoint> operating_points(OneAxisLoop loop, const ToolContactRange& range,
                                              double duration_s) {
   std::vector<OperatingPoint> out(3);
   out[0].name = "tool in the air";

@@ -40,7 +40,7 @@ struct ZWidthOptions {
 };
 /// Computes the Z-width of a loop, from zero damping to 0.97 times largest_damping().
 /// @throws Error if options.rows < 3
-ZWidth z_width(const HapticLoopModel& loop, const ZWidthOptions& options);
+ZWidth z_width(const OneAxisLoop& loop, const ZWidthOptions& options);
 
 /// Stiffness [N/m] and damping [N s/m] of a contact of the scene at the tool.
 struct ToolContact {
@@ -54,7 +54,7 @@ struct ToolContactRange {
 /// Returns the loop model of a scene: its tool, coupling, tick and device; device figures that the scene does
 /// not specify keep their defaults.
 /// @throws Error for a scene without a tool, or with exchange.scheme = "monolithic", which has no ticks
-HapticLoopModel loop_of(const scene::Description& description);
+OneAxisLoop loop_of(const scene::Description& description);
 /// Estimates the range of contact stiffnesses at the tool from the keys of the scene (derivation:
 /// scene_loop.cpp).
 /// @throws Error for a scene without a contact of the tool, or with a contact of springs per point
@@ -66,7 +66,7 @@ ToolContactRange contact_range(const scene::Description& description);
 /// device has its mass and damping at a lever of 50 mm, the order of a stylus. A device without torque output
 /// is held.
 struct RotationalLoop {
-  HapticLoopModel loop;    ///< Rotational loop: masses are I/a^2 [kg], stiffness and damping k/a^2 and b/a^2
+  OneAxisLoop loop;        ///< Rotational loop: masses are I/a^2 [kg], stiffness and damping k/a^2 and b/a^2
   ToolContactRange range;  ///< Contact at the lever
   double lever_m = 0.0;    ///< Lever a [m]
   double inertia_kg_m2 = 0.0;  ///< Least moment of inertia of the tool
@@ -74,7 +74,7 @@ struct RotationalLoop {
 };
 /// Returns the loop about the axis of the least moment of inertia.
 /// @param loop, range  loop model and contact range of the translation
-RotationalLoop rotational_loop_of(const scene::Description& description, const HapticLoopModel& loop,
+RotationalLoop rotational_loop_of(const scene::Description& description, const OneAxisLoop& loop,
                                   const ToolContactRange& range);
 
 /// Loop of the scene at one contact.
@@ -93,7 +93,7 @@ struct OperatingPoint {
 };
 /// Returns three operating points: tool in free air, in the softest and in the stiffest contact; each is
 /// simulated for `duration_s`.
-std::vector<OperatingPoint> operating_points(HapticLoopModel loop, const ToolContactRange& range,
+std::vector<OperatingPoint> operating_points(OneAxisLoop loop, const ToolContactRange& range,
                                              double duration_s);
 
 }  // namespace palpate::haptic_stability

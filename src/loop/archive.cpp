@@ -36,26 +36,26 @@ void archive_tool(Archive& a, tool::Tool& tool) {
   if (a.is_restoring()) tool.set_state(time, pose, twist);
 }
 
-void archive_ticks(Archive& a, TickTool& ticks) {
-  contact::TrajectoryFrame::Knot exchanged = ticks.path->last();
+void archive_partitioned(Archive& a, PartitionedTool& partitioned) {
+  contact::TrajectoryFrame::Knot exchanged = partitioned.path->last();
   a("known_time", exchanged.t);
   a("known_pose", exchanged.pose);
   a("known_twist", exchanged.twist);
   if (a.is_restoring()) {
-    ticks.path->clear();
-    ticks.path->append(exchanged.t, exchanged.pose, exchanged.twist);
+    partitioned.path->clear();
+    partitioned.path->append(exchanged.t, exchanged.pose, exchanged.twist);
   }
-  if (ticks.reduction) {
+  if (partitioned.reduction) {
     const Archive::Group group(a, "answers");
-    ticks.reduction->archive(a);
+    partitioned.reduction->archive(a);
   }
   const Archive::Group group(a, "tool");
-  archive_tool(a, ticks.tool);
-  if (ticks.rigid_contact) ticks.rigid_contact->query_next();
+  archive_tool(a, partitioned.tool);
+  if (partitioned.rigid_contact) partitioned.rigid_contact->query_next();
 }
 
 void archive_hand(Archive& a, ToolInstance& tool) {
-  if (TickTool* ticks = tool.with_ticks()) archive_ticks(a, *ticks);
+  if (PartitionedTool* partitioned = tool.partitioned()) archive_partitioned(a, *partitioned);
   a("handle_now", tool.handle);
   {
     const Archive::Group group(a, "device");
@@ -140,7 +140,7 @@ void VirtualTime::archive(Archive& a) {
   a("periods", periods_);
   if (dense_) a("dense", *dense_);
   a.each("hand", hands_, [&](Hand& hand) {
-    a("ticks", hand.ticks);
+    a("ticks", hand.haptic_loop);
     a("count", hand.count);
     a.bytes("in_force", hand.in_force);
     a.list("coming", hand.coming, [&](Coming& coming) {

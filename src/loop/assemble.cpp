@@ -286,8 +286,8 @@ std::unique_ptr<World> assemble(const scene::Description& description,
              [&] { world->tools.push_back(assemble_tool(*world, tools[i], std::move(hands[i]))); });
   assemble_attachments(*world);
   const bool carries = std::any_of(world->tools.begin(), world->tools.end(), [](const ToolInstance& tool) {
-    const TickTool* const ticks = tool.with_ticks();
-    return ticks && !ticks->ties.empty();
+    const PartitionedTool* const partitioned = tool.partitioned();
+    return partitioned && !partitioned->ties.empty();
   });
   if (carries || !description.contacts.empty()) assemble_contact(*world);
   if (world->state.layout().blocks.empty()) return world;  // only a tool with separate ticks

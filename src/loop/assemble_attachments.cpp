@@ -87,7 +87,7 @@ Carrier carrier_of(World& world, const Body& body, const AttachmentSpec& spec) {
     }
   const ToolInstance* const tool = world.find_tool(spec.to);
   if (!tool) fail("body \"{}\": attachment to = \"{}\" is neither a bone nor a tool", body.name, spec.to);
-  return {tool->in_state()->block_id, {}, start_of(tool->spec), nullptr};
+  return {tool->monolithic()->block_id, {}, start_of(tool->spec), nullptr};
 }
 
 /// Stiffness ratio of the spring of a node carried by a tool with ticks to the tissue around the node.
@@ -104,8 +104,8 @@ void tie(const Body& body, const SoftBodySpec& tissue, const std::vector<int>& n
   for (const int node : nodes) {
     const double length = std::cbrt(body.masses[node] / tissue.density_kg_m3),
                  stiffness = kStiffer * tissue.youngs_modulus_pa * length;
-    tool.with_ticks()->ties.push_back({first + node, from_world * Vec3(body.placed.col(node)), stiffness,
-                                       stiffness * tissue.stiffness_damping_s});
+    tool.partitioned()->ties.push_back({first + node, from_world * Vec3(body.placed.col(node)), stiffness,
+                                        stiffness * tissue.stiffness_damping_s});
   }
 }
 

@@ -213,9 +213,9 @@ std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
 }
 
 /// Creates the model reduction for a tool with ticks that contacts or carries bodies, unless it exists.
-void make_reduction(World& world, const ToolInstance& tool, TickTool& ticks) {
+void make_reduction(World& world, const ToolInstance& tool, PartitionedTool& partitioned) {
   const scene::Description& d = world.description;
-  if (ticks.reduction || d.exchange.linearisation != "points") return;
+  if (partitioned.reduction || d.exchange.linearisation != "points") return;
   ReductionOptions options{.error = d.exchange.linearisation_error,
                            .keep = steps_are_linearised(world) || world.tools.size() > 1,
                            .threads = d.integrator.threads};
@@ -227,7 +227,7 @@ void make_reduction(World& world, const ToolInstance& tool, TickTool& ticks) {
   for (std::size_t i = 0; i < world.bodies.size(); ++i)
     options.damping.push_back(
         {world.bodies[i].block_id, d.bodies[i].mass_damping_per_s, d.bodies[i].stiffness_damping_s});
-  ticks.reduction = std::make_unique<ModelReduction>(world.system, std::move(options));
+  partitioned.reduction = std::make_unique<ModelReduction>(world.system, std::move(options));
 }
 
 /// @pre the names are in canonical order (scene::order_sides)
@@ -266,8 +266,8 @@ void add_contact(World& world, ContactSpec& given, ToolProxies& proxies) {
   if (world.find_tool(spec.first) && !world.monolithic()) spec.friction_tangent = "secant";
   world.contact->add_pair(source_of(world, spec, proxies), spec);
   ToolInstance* const tool = world.find_tool(spec.second);
-  if (tool && tool->with_ticks() && world.find_body(spec.first))
-    make_reduction(world, *tool, *tool->with_ticks());
+  if (tool && tool->partitioned() && world.find_body(spec.first))
+    make_reduction(world, *tool, *tool->partitioned());
 }
 
 }  // namespace
@@ -280,11 +280,11 @@ void assemble_contact(World& world) {
   for (std::size_t i = 0; i < contacts.size(); ++i)
     at_place(world, fmt::format("contact[{}]", i), "", [&] { add_contact(world, contacts[i], proxies); });
   for (ToolInstance& tool : world.tools) {
-    TickTool* const ticks = tool.with_ticks();
-    if (!ticks || ticks->ties.empty()) continue;
+    PartitionedTool* const partitioned = tool.partitioned();
+    if (!partitioned || partitioned->ties.empty()) continue;
     frame_in_contact(world, tool);
-    world.contact->tie(tool.frame, ticks->ties);
-    make_reduction(world, tool, *ticks);
+    world.contact->tie(tool.frame, partitioned->ties);
+    make_reduction(world, tool, *partitioned);
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
 }

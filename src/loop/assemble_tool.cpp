@@ -158,7 +158,7 @@ ToolInstance assemble_tool(World& world, const scene::Hand& hand, std::unique_pt
   warn_of_limit(hand, tool);
   auto path = std::make_shared<contact::TrajectoryFrame>();
   path->append(tool.time(), tool.pose(), tool.twist());
-  return instance(TickTool{.tool = std::move(tool), .path = std::move(path)});
+  return instance(PartitionedTool{.tool = std::move(tool), .path = std::move(path)});
 }
 
 TriMesh tool_surface(const ToolSpec& spec, const std::string& folder) {

@@ -69,12 +69,12 @@ ContactRecord BodyLoop::linearise(std::size_t hand, double period_s) {
 }
 
 void BodyLoop::follow(std::size_t hand, double t, const Pose& pose, const Twist& twist) {
-  world_.tools[hand].with_ticks()->path->append(t, pose, twist);
+  world_.tools[hand].partitioned()->path->append(t, pose, twist);
 }
 
 void BodyLoop::restart_path() {
   for (ToolInstance& tool : world_.tools)
-    if (TickTool* ticks = tool.with_ticks()) ticks->path->restart();
+    if (PartitionedTool* partitioned = tool.partitioned()) partitioned->path->restart();
 }
 
 void BodyLoop::record_tick(std::size_t hand, const TickRecord& tick) {
@@ -123,7 +123,7 @@ void BodyLoop::advance_over_changes(double t) {
     const double stop = next_change();
     const bool on_the_way = stop < t * (1.0 - 1e-12);
     const double to = on_the_way ? stop : t;
-    result_.status = ticks_ ? ticks_->advance_to(to) : world_.stepper->advance_to(to);
+    result_.status = monolithic_ticks_ ? monolithic_ticks_->advance_to(to) : world_.stepper->advance_to(to);
     if (!result_.status.ok()) return;
     if (stop <= t * (1.0 + 1e-12)) change_materials(stop);
     if (!on_the_way) return;
@@ -134,10 +134,10 @@ void BodyLoop::hold_bodies(double t1) {
   for (double stop = next_change(); stop <= t1; stop = next_change()) change_materials(stop);
   const dynamics::StateView then = world_.state.view();
   for (const ToolInstance& tool : world_.tools) {
-    const TickTool* ticks = tool.with_ticks();
-    if (!ticks || ticks->ties.empty()) continue;
-    const auto& path = *ticks->path;
-    carry_along(world_.state, ticks->ties, {path.pose(then), path.twist(then)},
+    const PartitionedTool* partitioned = tool.partitioned();
+    if (!partitioned || partitioned->ties.empty()) continue;
+    const auto& path = *partitioned->path;
+    carry_along(world_.state, partitioned->ties, {path.pose(then), path.twist(then)},
                 {path.last().pose, path.last().twist});
   }
   world_.state.set_time(t1);

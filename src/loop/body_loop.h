@@ -53,7 +53,7 @@ class BodyLoop {
   /// Returns whether the run has failed or was stopped; results of this period are then not kept.
   bool ended();
   /// Routes steps through these ticks, for the monolithic scheme.
-  void set_ticks(MonolithicTicks* ticks) { ticks_ = ticks; }
+  void set_ticks(MonolithicTicks* ticks) { monolithic_ticks_ = ticks; }
   /// Copies the counters of stepper, contact, limiters and devices to the result.
   void sum_up();
   void finish();
@@ -88,7 +88,7 @@ class BodyLoop {
   };
   std::vector<HandTicks> hand_ticks_;
   std::optional<EnergyLedger> ledger_;  ///< Only if an observer requests it.
-  MonolithicTicks* ticks_ = nullptr;
+  MonolithicTicks* monolithic_ticks_ = nullptr;
 };
 
 /// Returns the whole number of ticks, steps or periods nearest to a ratio, at least one.

@@ -2,7 +2,7 @@
 #include <type_traits>
 
 #include "contact/reduced_contact_model.h"
-#include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/linearised_contact.h"
 
 namespace palpate::loop {
 

@@ -93,7 +93,7 @@ void EnergyLedger::take_stored() {
     const Pose& handle = world_.tools[i].handle.pose;
     balance_.kinetic_of_tools += probe.kinetic_energy();
     balance_.coupling += probe.coupling_energy(handle);
-    if (world_.tools[i].in_state()) continue;  // terms of the System
+    if (world_.tools[i].monolithic()) continue;  // terms of the System
     balance_.kinetic += probe.kinetic_energy();
     balance_.other += probe.potential_energy(handle);
   }

@@ -8,7 +8,7 @@
 namespace palpate::loop {
 
 HapticLoop::HapticLoop(ToolInstance& tool, const std::vector<ContactSpec>* laws)
-    : tool_(tool), ticks_(tool.with_ticks()) {
+    : tool_(tool), partitioned_(tool.partitioned()) {
   if (laws) touch_.emplace(*laws);
 }
 
@@ -73,7 +73,7 @@ void HapticLoop::begin_tick(double t, double h, const ContactRecord& record) {
   of_bodies_ = record.linear;
   if (record.linear.source != dynamics::LinearisedContact::Source::kPoints) return;
   if (record.linear.version != active_version_) adopt_model(record);
-  of_bodies_ = touch_->linearise(t, h, {ticks_->tool.pose(), ticks_->tool.twist()});
+  of_bodies_ = touch_->linearise(t, h, {partitioned_->tool.pose(), partitioned_->tool.twist()});
   of_bodies_.version = record.linear.version;
 }
 
@@ -82,11 +82,11 @@ bool HapticLoop::has_friction() const {
 }
 
 tool::StepEquation HapticLoop::equation(double h, const dynamics::LinearisedContact& contact) const {
-  return ticks_->tool.step_equation(h, handle_motion(), contact);
+  return partitioned_->tool.step_equation(h, handle_motion(), contact);
 }
 
 bool HapticLoop::update_friction(double h, const Vec6& change) {
-  return !has_friction() || touch_->update_friction(ticks_->tool.after(h, change));
+  return !has_friction() || touch_->update_friction(partitioned_->tool.after(h, change));
 }
 
 void HapticLoop::relinearise() {
@@ -100,14 +100,14 @@ dynamics::StepResult HapticLoop::tick(double t, double h, const dynamics::Linear
                                       TickRecord& out) {
   if (!next_) next_ = tool_.device->sample(t);
   const device::HandleSample now = *next_;
-  dynamics::StepResult status = ticks_->tool.advance(h, handle_motion(), contact);
+  dynamics::StepResult status = partitioned_->tool.advance(h, handle_motion(), contact);
   next_.reset();
   if (!status.ok()) return status;
   out = {};
   out.time = t;
   out.length = h;
-  out.tool = ticks_->tool.pose();
-  out.tool_twist = ticks_->tool.twist();
+  out.tool = partitioned_->tool.pose();
+  out.tool_twist = partitioned_->tool.twist();
   out.record_version = contact.version;
   if (touch_) {
     past_[count_++ % past_.size()] = {t, h, {out.tool, out.tool_twist}};
@@ -122,7 +122,7 @@ dynamics::StepResult HapticLoop::tick(double t, double h, const dynamics::Linear
 }
 
 bool HapticLoop::hand_in_state() const {
-  const MonolithicTool* const tool = tool_.in_state();
+  const MonolithicTool* const tool = tool_.monolithic();
   return tool && tool->hand;
 }
 

@@ -14,7 +14,7 @@ namespace palpate::loop {
 /// that it may run in a separate thread.
 class HapticLoop {
  public:
-  /// @param tool  its TickTool::tool, device and limiter are used by this object alone during a run
+  /// @param tool  its PartitionedTool::tool, device and limiter are used by this object alone during a run
   /// @param laws  contact laws for contact points; null: records have no points
   explicit HapticLoop(ToolInstance& tool, const std::vector<ContactSpec>* laws = nullptr);
   /// Builds the tick side of a scene's tool.
@@ -39,8 +39,8 @@ class HapticLoop {
   bool update_friction(double h, const Vec6& change);
   /// Linearises contact with bodies with the updated friction.
   void relinearise();
-  /// Returns the tool. @pre it has ticks
-  const TickTool& ticks() const { return *ticks_; }
+  /// Returns the tool. @pre the scheme is partitioned
+  const PartitionedTool& partitioned_tool() const { return *partitioned_; }
   /// Makes the wrench of the next tick ramp in from zero, after too long a gap without a wrench.
   void ramp_in() { ramps_in_ = true; }
   /// Advances the tool by h to t under coupling and that contact, and sends the wrench to the device.
@@ -70,7 +70,7 @@ class HapticLoop {
   void adopt_model(const ContactRecord& record);
 
   ToolInstance& tool_;
-  TickTool* const ticks_;  ///< Its part with ticks; null for the monolithic scheme.
+  PartitionedTool* const partitioned_;  ///< Null for the monolithic scheme.
   device::HandleSample handle_;
   std::optional<device::HandleSample> next_;             ///< Sample of the current tick.
   dynamics::LinearisedContact of_bodies_;                ///< In the current tick.

@@ -11,7 +11,7 @@ CoupledTool coupled_tool(World& world, const ToolInstance& tool, const contact::
   CoupledTool out{world.system, world.state, *world.contact, tool.frame, {now.pose, now.twist}};
   for (const ToolInstance& other : world.tools)
     if (&other != &tool && other.frame >= 0)
-      out.others.push_back({other.frame, other.with_ticks()->path->last().twist});
+      out.others.push_back({other.frame, other.partitioned()->path->last().twist});
   return out;
 }
 
@@ -23,17 +23,17 @@ ContactRecord linearise_contact(World& world, std::uint64_t version, double peri
   using Source = dynamics::LinearisedContact::Source;
   counters::count("loop.exchange_record");
   ToolInstance& tool = world.tools.at(hand);
-  TickTool& ticks = *tool.with_ticks();
+  PartitionedTool& partitioned = *tool.partitioned();
   ContactRecord out;
   dynamics::LinearisedContact& record = out.linear;
   record.version = version;
   record.time = world.state.time();
   if (tool.frame < 0) return out;
-  const contact::TrajectoryFrame::Knot& now = ticks.path->last();
+  const contact::TrajectoryFrame::Knot& now = partitioned.path->last();
   set_reference(record, record.time, now.pose, now.twist);
   const CoupledTool coupled = coupled_tool(world, tool, now);
-  if (ticks.reduction) {
-    frozen_fallbacks += !ticks.reduction->reduce(coupled, period_s, out.touch);
+  if (partitioned.reduction) {
+    frozen_fallbacks += !partitioned.reduction->reduce(coupled, period_s, out.touch);
     record.source = Source::kPoints;
     record.samples = out.touch.samples;
     return out;
@@ -47,7 +47,7 @@ ContactRecord linearise_contact(World& world, std::uint64_t version, double peri
   record.source = Source::kFrozen;
   const bool condensed = world.description.exchange.linearisation == "condensed";
   if (condensed && c.active > 0 &&
-      !condense(coupled, ticks.step_factor, period_s, tool.spec.tick_s, c, record))
+      !condense(coupled, partitioned.step_factor, period_s, tool.spec.tick_s, c, record))
     ++frozen_fallbacks;
   return out;
 }

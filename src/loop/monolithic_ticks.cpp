@@ -11,13 +11,13 @@ namespace {
 constexpr double kSameTick = 1e-6;
 
 TickRecord tick_of(const World& world, const ToolInstance& tool, double t, const dynamics::StateView& state) {
-  const MonolithicTool& in_state = *tool.in_state();
-  const dynamics::RigidMotion motion = in_state.motion(state);
+  const MonolithicTool& of_tool = *tool.monolithic();
+  const dynamics::RigidMotion motion = of_tool.motion(state);
   TickRecord tick;
   tick.time = t;
   tick.tool = motion.pose;
   tick.tool_twist = motion.twist;
-  if (const auto& hand = in_state.hand) {
+  if (const auto& hand = of_tool.hand) {
     const tool::HandleState handle = tool::hand_motion(state, hand->block_id, hand->block);
     tick.handle = handle.pose;
     tick.handle_twist = handle.twist;

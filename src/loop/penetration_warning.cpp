@@ -2,21 +2,21 @@
 
 #include <cmath>
 
-#include "loop/summary.h"
+#include "loop/penetration.h"
 #include "palpate/core/log.h"
 
 namespace palpate::loop {
 namespace {
 
-void warn_of_own_overlap(const Overlap& o, double t) {
+void warn_of_own_penetration(const PenetrationReport& o, double t) {
   log::warn(
       "contact {} at t = {:.6g} s: penetration reached {:.3g} mm; self-contact detects overlaps up to "
       "{:.3g} mm, and deeper points are not separated. Increase contact.stiffness_pa_m, or press less "
       "deeply",
-      o.pair, t, 1e3 * o.deepest_m, 1e3 * o.half_width_m / Overlap::kOwnShare);
+      o.pair, t, 1e3 * o.deepest_m, 1e3 * o.half_width_m / PenetrationReport::kOwnShare);
 }
 
-void warn_of_overlap(const Overlap& o, double t) {
+void warn_of_penetration(const PenetrationReport& o, double t) {
   log::warn(
       "contact {} at t = {:.6g} s: penetration reached {:.3g} mm, more than half the thickness of the "
       "thinner side ({:.3g} mm): {}",
@@ -36,9 +36,9 @@ void PenetrationWarning::check(const World& world, double t) {
   if (checked_to_.empty()) checked_to_.assign(pairs.size(), 0.0);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (!(pairs[i].deepest > checked_to_[i])) continue;
-    const Overlap o = overlaps_of(world)[i];
+    const PenetrationReport o = penetration_reports(world)[i];
     checked_to_[i] = o.too_deep() ? HUGE_VAL : o.half_width_m;
-    if (o.too_deep()) o.of_itself ? warn_of_own_overlap(o, t) : warn_of_overlap(o, t);
+    if (o.too_deep()) o.of_itself ? warn_of_own_penetration(o, t) : warn_of_penetration(o, t);
   }
 }
 

@@ -6,7 +6,7 @@
 namespace palpate::loop {
 
 /// Observer that logs a warning for each [[contact]] whose penetration becomes too deep for a penalty method
-/// (Overlap::too_deep), once per contact.
+/// (PenetrationReport::too_deep), once per contact.
 class PenetrationWarning : public Observer {
  public:
   void period(World& world, double t) override { check(world, t); }

@@ -13,8 +13,8 @@
 #include "core/spsc_ring.h"
 #include "loop/contact_record.h"
 #include "palpate/core/error.h"
+#include "palpate/core/triple_buffer.h"
 #include "palpate/device/limiter.h"
-#include "palpate/dynamics/exchange.h"
 #include "real_time_thread.h"
 #include "tick_group.h"
 
@@ -92,7 +92,7 @@ class RealTime {
 
   void run() {
     if (!await_devices()) return;
-    for (Hand& hand : hands_) hand.ticks.start(0.0);
+    for (Hand& hand : hands_) hand.haptic_loop.start(0.0);
     bodies_.restart_path();
     bodies_.start();
     if (world_.stepper) world_.stepper->set_interrupt(&interrupt_);
@@ -100,7 +100,7 @@ class RealTime {
     publish();
     if (world_.stepper) world_.stepper->prepare(bodies_.period());
     for (ToolInstance& tool : world_.tools)
-      if (const auto& reduction = tool.with_ticks()->reduction)
+      if (const auto& reduction = tool.partitioned()->reduction)
         reduction->prepare(world_.state, bodies_.period());
     std::thread thread([this] { tick_to_the_end(); });
     ready_.wait();
@@ -147,7 +147,7 @@ class RealTime {
       tick_by_the_clock();
     } catch (...) { failure_ = std::current_exception(); }
     for (Hand& hand : hands_) try {
-        hand.ticks.end();
+        hand.haptic_loop.end();
       } catch (...) {
         if (!failure_) failure_ = std::current_exception();
       }
@@ -177,9 +177,9 @@ class RealTime {
           return hands_[hand].records.latest();
         });
       for (timed.hand = 0; timed.hand < hands_.size(); ++timed.hand) {
-        HapticLoop& ticks = hands_[timed.hand].ticks;
-        if (ramps_in) ticks.ramp_in();
-        tick_status_ = ticks.tick(t, tick_s_, *contact_of_[timed.hand], timed.record);
+        HapticLoop& haptic_loop = hands_[timed.hand].haptic_loop;
+        if (ramps_in) haptic_loop.ramp_in();
+        tick_status_ = haptic_loop.tick(t, tick_s_, *contact_of_[timed.hand], timed.record);
         if (!tick_status_.ok()) return;
         timed.record.left_out = static_cast<std::uint32_t>(left_out);
         timed.work_s = seconds(now_ns() - woke);  // for the last hand, the time of all hands
@@ -284,9 +284,9 @@ class RealTime {
   }
 
   struct Hand {
-    Hand(const scene::Description& d, ToolInstance& tool) : ticks(d, tool) {}
-    HapticLoop ticks;
-    dynamics::Exchange<ContactRecord> records;
+    Hand(const scene::Description& d, ToolInstance& tool) : haptic_loop(d, tool) {}
+    HapticLoop haptic_loop;
+    TripleBuffer<ContactRecord> records;
   };
 
   World& world_;

@@ -163,7 +163,7 @@ struct Retraced {
   Retraced(const scene::Description& recorded, const World& world, const HapticRecord& of, ToolInstance& tool)
       : record(of),
         laws(laws_of(recorded, world, tool.spec)),
-        ticks(tool, of.models.empty() ? nullptr : &laws) {
+        haptic_loop(tool, of.models.empty() ? nullptr : &laws) {
     tool.passivity = device::make_passivity_controller(of.passivity, tool.device_spec, tool.spec.tick_s);
   }
   static std::vector<ContactSpec> laws_of(const scene::Description& recorded, const World& world,
@@ -189,7 +189,7 @@ struct Retraced {
   }
   const HapticRecord& record;
   const std::vector<ContactSpec> laws;
-  HapticLoop ticks;
+  HapticLoop haptic_loop;
   ContactRecord contact{};
 };
 
@@ -213,7 +213,7 @@ std::vector<TickRecord> retrace(const scene::Description& description,
   std::deque<Retraced> retraced;
   for (std::size_t i = 0; i < hands.size(); ++i) {
     retraced.emplace_back(description, *world, records[hands[i]], world->tools[i]);
-    retraced.back().ticks.start(0.0);
+    retraced.back().haptic_loop.start(0.0);
   }
   std::vector<TickGroup> group = TickGroup::all(retraced);
   PALPATE_CHECK(group.size() == 1, "{} groups of hands whose tools can touch, expected 1", group.size());
@@ -224,9 +224,9 @@ std::vector<TickRecord> retrace(const scene::Description& description,
                           [&](std::size_t i) -> const ContactRecord& { return retraced[i].in_force(n); });
     for (std::size_t i = 0; i < hands.size(); ++i) {
       TickRecord again;
-      if (tick.ramps_in) retraced[i].ticks.ramp_in();
+      if (tick.ramps_in) retraced[i].haptic_loop.ramp_in();
       const dynamics::StepResult status =
-          retraced[i].ticks.tick(tick.time, tick.length, group[0].contact(i), again);
+          retraced[i].haptic_loop.tick(tick.time, tick.length, group[0].contact(i), again);
       if (!status.ok()) fail("replay: {}", status.message);
       again.left_out = tick.left_out;
       if (hands[i] == hand) out.push_back(again);

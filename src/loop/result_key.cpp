@@ -70,7 +70,11 @@ std::string result_key(const scene::Description& d, const std::string& more) {
   hash.add(made_by()).add(without_compare(d.source)).add(fmt::format("{}", d.compare.duration_s)).add(more);
   const std::string folder = fs::path(d.path).parent_path().string();
   for (const SoftBodySpec& body : d.bodies) add_mesh(hash, body.mesh, folder);
-  for (const scene::Hand& hand : scene::hands_of(d)) add_mesh(hash, hand.tool->mesh, folder);
+  for (const scene::Hand& hand : scene::hands_of(d)) {
+    add_mesh(hash, hand.tool->mesh, folder);
+    if (hand.device && !hand.device->file.empty())
+      hash.add_file((fs::path(folder) / hand.device->file).string());
+  }
   return hash.hex();
 }
 

@@ -13,8 +13,8 @@ std::string without_compare(const std::string& source);
 /// size and modification time of the program and the palpate libraries are appended.
 const std::string& made_by();
 
-/// Returns the key of the result of one run: a hash of the scene's text, the bytes of its mesh files, the
-/// simulated time, this build, and `more`.
+/// Returns the key of the result of one run: a hash of the scene's text, the bytes of its mesh files and
+/// recordings, the simulated time, this build, and `more`.
 std::string result_key(const scene::Description& description, const std::string& more);
 
 }  // namespace palpate::loop

@@ -11,10 +11,10 @@ namespace palpate::loop {
 
 std::shared_ptr<contact::MovingFrame> frame_in_contact(World& world, ToolInstance& tool) {
   std::shared_ptr<contact::MovingFrame> frame;
-  if (const TickTool* ticks = tool.with_ticks())
-    frame = ticks->path;
+  if (const PartitionedTool* partitioned = tool.partitioned())
+    frame = partitioned->path;
   else
-    frame = contact::block_frame(tool.in_state()->block_id);
+    frame = contact::block_frame(tool.monolithic()->block_id);
   if (tool.frame < 0) tool.frame = world.contact->add_frame(frame);
   return frame;
 }
@@ -103,16 +103,16 @@ std::unique_ptr<contact::SampleSource> make_for_ticks_and_world(World& world,
   const scene::CosimulationSpec& exchange = world.description.exchange;
   for (ToolInstance* tool : meeting) {
     const auto motion = frame_in_contact(world, *tool);
-    const TickTool* ticks = tool->with_ticks();
-    const double look_ahead = ticks ? exchange.exchange_period_s : exchange.contact_refresh_s;
+    const PartitionedTool* partitioned = tool->partitioned();
+    const double look_ahead = partitioned ? exchange.exchange_period_s : exchange.contact_refresh_s;
     in_world.push_back({tool->spec, tool->frame, motion, look_ahead});
-    if (!ticks) continue;
-    const RigidContactSolver& solver = *ticks->rigid_contact;
-    const int number = ticks->number_in_rigid_contact;
+    if (!partitioned) continue;
+    const RigidContactSolver& solver = *partitioned->rigid_contact;
+    const int number = partitioned->number_in_rigid_contact;
     in_ticks.push_back({tool->spec, solver.frame(number), solver.motion(number), solver.look_ahead()});
   }
   if (!in_ticks.empty()) {
-    contact::ContactForce& own = meeting.front()->with_ticks()->rigid_contact->contact();
+    contact::ContactForce& own = meeting.front()->partitioned()->rigid_contact->contact();
     own.add_pair(make(in_ticks, own), spec);
   }
   return make(in_world, *world.contact);
@@ -164,12 +164,12 @@ void make_rigid_contact_solver(World& world) {
             "{}, that of \"{}\" {}; make them equal",
             tool.name, tool.spec.tick_s, leader.name, leader.spec.tick_s);
       });
-    TickTool& ticks = *tool.with_ticks();
-    ticks.rigid_contact = leader.with_ticks()->rigid_contact;
-    if (!ticks.rigid_contact)
-      ticks.rigid_contact =
+    PartitionedTool& partitioned = *tool.partitioned();
+    partitioned.rigid_contact = leader.partitioned()->rigid_contact;
+    if (!partitioned.rigid_contact)
+      partitioned.rigid_contact =
           std::make_shared<RigidContactSolver>(std::max(d.exchange.contact_refresh_s, tool.spec.tick_s));
-    ticks.number_in_rigid_contact = ticks.rigid_contact->add(tool.spec);
+    partitioned.number_in_rigid_contact = partitioned.rigid_contact->add(tool.spec);
   }
 }
 

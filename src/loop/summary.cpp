@@ -6,9 +6,9 @@
 #include <set>
 
 #include "contact/gpu_device.h"
-#include "contact/sources.h"
 #include "core/clock.h"
 #include "core/counters.h"
+#include "loop/penetration.h"
 #include "palpate/device/profile.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
@@ -126,20 +126,21 @@ void add_pruning(store::SummaryFields& row, const proxy::PruneCounts& c, const W
 /// Adds one row per [[contact]].
 void add_contacts(store::Summary& summary, const World& world, const RunResult& result) {
   if (!world.contact) return;
-  const std::vector<Overlap> overlaps = overlaps_of(world);
+  const std::vector<PenetrationReport> penetrations = penetration_reports(world);
   const std::vector<contact::PairReport> pairs = world.contact->pairs();
-  for (std::size_t i = 0; i < overlaps.size(); ++i) {
+  for (std::size_t i = 0; i < penetrations.size(); ++i) {
     const ContactSpec& contact = world.description.contacts[i];
-    const Overlap& overlap = overlaps[i];
+    const PenetrationReport& penetration = penetrations[i];
     const contact::PairReport& pair = pairs[i];
     store::SummaryFields row = {{"between", std::vector<std::string>{contact.first, contact.second}},
                                 {"method", pair.method}};
     if (i < result.tunnelled.size())
       row.emplace_back("tunnelled", static_cast<long long>(result.tunnelled[i]));
-    row.emplace_back("deepest_overlap_m", overlap.deepest_m);
-    if (overlap.quadrature_error > 0.0)
-      row.emplace_back("largest_quadrature_error", overlap.quadrature_error);
-    if (overlap.largest_share > 0.0) row.emplace_back("largest_share_of_a_point", overlap.largest_share);
+    row.emplace_back("deepest_overlap_m", penetration.deepest_m);
+    if (penetration.quadrature_error > 0.0)
+      row.emplace_back("largest_quadrature_error", penetration.quadrature_error);
+    if (penetration.largest_share > 0.0)
+      row.emplace_back("largest_share_of_a_point", penetration.largest_share);
     row.emplace_back("fast_regions", static_cast<long long>(pair.fast_regions));
     if (pair.stages) {
       row.emplace_back("normals_kept", static_cast<long long>(pair.normals_kept));
@@ -247,25 +248,6 @@ void add_real_time(store::Summary& summary, const RunResult& result) {
                   *result.real_time);
 }
 
-/// Returns half of the smallest extent of a side of a contact, along the axes in which it was defined [m].
-double half_width(const World& world, const std::string& side) {
-  const auto of_points = [](const Points& points) {
-    return 0.5 * (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).minCoeff();
-  };
-  if (const Body* body = world.find_body(side)) return of_points(body->rest.nodes);
-  if (const ToolSpec* tool = scene::tool_named(world.description, side))
-    return tool->shape == ToolShape::kSphere ? tool->radius_m
-                                             : of_points(tool_surface(*tool, world.folder).vertices);
-  for (const ObstacleSpec& obstacle : world.description.obstacles)
-    if (obstacle.name == side)
-      return 0.5 * contact::obstacle_entry(obstacle).lengths(contact::obstacle_shape(obstacle)).width;
-  return HUGE_VAL;
-}
-
-double depth_within_itself(const Body& body) {
-  return contact::own_contact_depth(contact::lengths_of(body.skin ? body.skin->rest : body.boundary.surface));
-}
-
 }  // namespace
 
 std::vector<std::pair<std::string, long long>> tallies_of(const World& world, std::size_t hand) {
@@ -276,32 +258,12 @@ std::vector<std::pair<std::string, long long>> tallies_of(const World& world, st
 std::vector<AnswerError> answer_errors_of(const World& world) {
   std::vector<AnswerError> out;
   for (const ToolInstance& tool : world.tools) {
-    const TickTool* ticks = tool.with_ticks();
-    if (!ticks || !ticks->reduction || ticks->reduction->error_bound().exchanges == 0) continue;
-    const ReductionError& m = ticks->reduction->error_bound();
+    const PartitionedTool* partitioned = tool.partitioned();
+    if (!partitioned || !partitioned->reduction || partitioned->reduction->error_bound().exchanges == 0)
+      continue;
+    const ReductionError& m = partitioned->reduction->error_bound();
     out.push_back({tool.name, world.description.exchange.linearisation_error, m.largest,
                    m.sum / static_cast<double>(m.exchanges), m.exchanges, m.beyond_wanted, m.factored});
-  }
-  return out;
-}
-
-std::vector<Overlap> overlaps_of(const World& world) {
-  std::vector<Overlap> out;
-  if (!world.contact) return out;
-  const std::vector<contact::PairReport> pairs = world.contact->pairs();
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const ContactSpec& contact = world.description.contacts[i];
-    Overlap one{fmt::format("{} - {}", contact.first, contact.second), pairs[i].deepest, HUGE_VAL,
-                contact.first == contact.second};
-    if (const contact::SumError* error = pairs[i].sum_error) {
-      one.quadrature_error = error->largest();
-      one.largest_share = error->largest_share();
-    }
-    if (one.deepest_m > 0.0 && one.of_itself)
-      one.half_width_m = Overlap::kOwnShare * depth_within_itself(*world.find_body(contact.first));
-    else if (one.deepest_m > 0.0)
-      one.half_width_m = std::min(half_width(world, contact.first), half_width(world, contact.second));
-    out.push_back(one);
   }
   return out;
 }

@@ -7,16 +7,16 @@ namespace palpate::loop {
 
 TickGroup::TickGroup(std::vector<Member> members)
     : members_(std::move(members)),
-      rigid_(members_.front().ticks->ticks().rigid_contact.get()),
+      rigid_(members_.front().haptic_loop->partitioned_tool().rigid_contact.get()),
       found_(members_.size()),
       equations_(members_.size()) {}
 
 std::vector<TickGroup> TickGroup::of(const std::vector<Member>& all) {
   std::vector<std::vector<Member>> sets;
   for (const Member& member : all) {
-    const auto& rigid = member.ticks->ticks().rigid_contact;
+    const auto& rigid = member.haptic_loop->partitioned_tool().rigid_contact;
     const auto set = std::find_if(sets.begin(), sets.end(), [&](const auto& others) {
-      return rigid && others.front().ticks->ticks().rigid_contact == rigid;
+      return rigid && others.front().haptic_loop->partitioned_tool().rigid_contact == rigid;
     });
     (set == sets.end() ? sets.emplace_back() : *set).push_back(member);
   }
@@ -32,20 +32,20 @@ void TickGroup::find(double h) {
   bool has_friction = false;
   motions_.clear();
   for (const Member& member : members_) {
-    has_friction = has_friction || member.ticks->has_friction();
-    const tool::Tool& tool = member.ticks->ticks().tool;
+    has_friction = has_friction || member.haptic_loop->has_friction();
+    const tool::Tool& tool = member.haptic_loop->partitioned_tool().tool;
     motions_.push_back({tool.pose(), tool.twist()});
   }
-  if (rigid_) rigid_->begin_tick(members_.front().ticks->ticks().tool.time(), motions_);
+  if (rigid_) rigid_->begin_tick(members_.front().haptic_loop->partitioned_tool().tool.time(), motions_);
   const bool touches = rigid_ && rigid_->touches();
   if (has_friction || (touches && (rigid_->has_friction() || members_.size() > 1)))
     while (!solve_and_improve(h)) {
       // All contacts are linearised about the same guess of the end.
-      for (const Member& member : members_) member.ticks->relinearise();
+      for (const Member& member : members_) member.haptic_loop->relinearise();
       if (touches) rigid_->relinearise();
     }
   for (std::size_t i = 0; i < members_.size(); ++i) {
-    found_[i] = members_[i].ticks->contact_with_bodies();
+    found_[i] = members_[i].haptic_loop->contact_with_bodies();
     if (touches) found_[i] = rigid_->with(static_cast<int>(i), found_[i]);
   }
   if (rigid_) rigid_->end_tick();
@@ -54,8 +54,8 @@ void TickGroup::find(double h) {
 bool TickGroup::solve_and_improve(double h) {
   const bool touches = rigid_ && rigid_->touches();
   for (std::size_t i = 0; i < members_.size(); ++i) {
-    const dynamics::LinearisedContact& of_bodies = members_[i].ticks->contact_with_bodies();
-    equations_[i] = members_[i].ticks->equation(
+    const dynamics::LinearisedContact& of_bodies = members_[i].haptic_loop->contact_with_bodies();
+    equations_[i] = members_[i].haptic_loop->equation(
         h, touches ? rigid_->about_now(static_cast<int>(i), of_bodies) : of_bodies);
   }
   if (touches) rigid_->solve(h, equations_);
@@ -63,7 +63,7 @@ bool TickGroup::solve_and_improve(double h) {
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const Vec6 change = touches ? rigid_->change(static_cast<int>(i))
                                 : Vec6(equations_[i].A.partialPivLu().solve(equations_[i].r));
-    done = members_[i].ticks->update_friction(h, change) && done;
+    done = members_[i].haptic_loop->update_friction(h, change) && done;
   }
   return done;
 }

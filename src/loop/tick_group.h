@@ -12,17 +12,17 @@ class TickGroup {
   /// One hand of the group.
   struct Member {
     std::size_t hand;  ///< In the numbering of scene::hands_of().
-    HapticLoop* ticks;
+    HapticLoop* haptic_loop;
   };
   /// @param members  pointees must outlive the group; hands that share a RigidContactSolver are complete and
   /// in its order
   explicit TickGroup(std::vector<Member> members);
   /// Returns one group per set of hands that meet, ordered by the first hand of each.
-  /// @param hands  all hands, each with a member `ticks`; they must outlive the groups
+  /// @param hands  all hands, each with a member `haptic_loop`; they must outlive the groups
   template <class Hands>
   static std::vector<TickGroup> all(Hands& hands) {
     std::vector<Member> members;
-    for (auto& hand : hands) members.push_back({members.size(), &hand.ticks});
+    for (auto& hand : hands) members.push_back({members.size(), &hand.haptic_loop});
     return of(members);
   }
 
@@ -32,7 +32,7 @@ class TickGroup {
   /// @param record_of  returns the record in force for a hand
   template <class RecordOf>
   void find_contact(double t, double h, const RecordOf& record_of) {
-    for (const Member& member : members_) member.ticks->begin_tick(t, h, record_of(member.hand));
+    for (const Member& member : members_) member.haptic_loop->begin_tick(t, h, record_of(member.hand));
     find(h);
   }
   /// Returns the contact record of a member.  @param i  index of the member

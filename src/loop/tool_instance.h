@@ -17,24 +17,27 @@
 
 // Poses of a tool. Each is stored once:
 //
-//   ToolSpec::position_m      at the start of the simulation
-//   TickTool::tool.pose()     after the last tick, which only the thread of the ticks reads
-//   TickTool::path            at the ticks since the last exchange, as reported to the bodies; the last one
-//                             is World::tool_pose() and, until the next ticks, that of the next exchange
-//   MonolithicTool::block_id  in the State, at the State's time: World::tool_pose() of the monolithic scheme
-//   TickRecord::tool          at the end of one tick, in transit from the ticks to path and files
+//   ToolSpec::position_m          at the start of the simulation
+//   PartitionedTool::tool.pose()  after the last tick, which only the thread of the ticks reads
+//   PartitionedTool::path         at the ticks since the last exchange, as reported to the bodies; the last
+//                                 one is World::tool_pose() and, until the next ticks, that of the next
+//                                 exchange
+//   MonolithicTool::block_id      in the State, at the State's time: World::tool_pose() of the monolithic
+//                                 scheme
+//   TickRecord::tool              at the end of one tick, in transit from the ticks to path and files
 //   LinearisedContact::x0, ReducedContactModel::tool
-//                             pose of an exchange, in transit from the bodies to the ticks and files
-//   RigidContactSolver        at the start of the present tick, in the form that ContactForce reads
-//   HapticLoop::past_         at the last ticks, for records that arrive late
+//                                 pose of an exchange, in transit from the bodies to the ticks and files
+//   TickGroup::motions_           at the start of the present tick, in transit to the RigidContactSolver
+//   RigidContactSolver            at the start of the present tick, in the form that ContactForce reads
+//   HapticLoop::past_             at the last ticks, for records that arrive late
 //
-// The handle has two: HapticLoop::handle_ (at the last tick, read by the ticks) and ToolInstance::handle (as
-// reported to the bodies).
+// The handle has three: HapticLoop::handle_ (at the last tick) and HapticLoop::next_ (at the end of the
+// present tick), both read by the ticks, and ToolInstance::handle (as reported to the bodies).
 namespace palpate::loop {
 
 /// Tool of the partitioned scheme, which advances by ticks. During a run `tool` and `rigid_contact` belong to
 /// the ticks, in real time another thread; the bodies and observers may use only the other members.
-struct TickTool {
+struct PartitionedTool {
   tool::Tool tool;
   /// Its motion since the last exchange, and its frame in contact with bodies.
   std::shared_ptr<contact::TrajectoryFrame> path;
@@ -74,16 +77,16 @@ struct ToolInstance {
   const DeviceSpec& device_spec;  ///< Part of the World's description.
   std::unique_ptr<device::Device> device;
   device::WrenchLimiter limiter;
-  std::variant<TickTool, MonolithicTool> scheme;
+  std::variant<PartitionedTool, MonolithicTool> scheme;
   /// Motors of the device; without delay for the monolithic scheme, whose hand is not sampled.
   device::Motors motors = {};
   std::unique_ptr<device::PassivityController> passivity = {};  ///< null if passivity is off
   device::HandleSample handle = {};  ///< At the last tick that was reported to the bodies.
   int frame = -1;                    ///< Index of its frame in World::contact; -1 if no contact refers to it.
 
-  TickTool* with_ticks() { return std::get_if<TickTool>(&scheme); }
-  const TickTool* with_ticks() const { return std::get_if<TickTool>(&scheme); }
-  const MonolithicTool* in_state() const { return std::get_if<MonolithicTool>(&scheme); }
+  PartitionedTool* partitioned() { return std::get_if<PartitionedTool>(&scheme); }
+  const PartitionedTool* partitioned() const { return std::get_if<PartitionedTool>(&scheme); }
+  const MonolithicTool* monolithic() const { return std::get_if<MonolithicTool>(&scheme); }
 };
 
 }  // namespace palpate::loop

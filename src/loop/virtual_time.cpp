@@ -7,7 +7,7 @@ namespace palpate::loop {
 VirtualTime::VirtualTime(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result)
     : world_(world), bodies_(bodies), options_(options), result_(result) {
   make_hands();
-  for (Hand& hand : hands_) hand.ticks.start(0.0);
+  for (Hand& hand : hands_) hand.haptic_loop.start(0.0);
   bodies.restart_path();
   bodies.start();
 }
@@ -29,7 +29,7 @@ void VirtualTime::make_hands() {
     return;
   }
   dense_.emplace(world_, [this](std::size_t hand, TickRecord tick) {
-    hands_[hand].ticks.render_force(tick);
+    hands_[hand].haptic_loop.render_force(tick);
     bodies_.record_tick(hand, tick);
   });
   bodies_.set_ticks(&*dense_);
@@ -46,7 +46,7 @@ bool VirtualTime::next() {
 }
 
 void VirtualTime::end() {
-  for (Hand& hand : hands_) hand.ticks.end();
+  for (Hand& hand : hands_) hand.haptic_loop.end();
 }
 
 void VirtualTime::one_period(double t0, double t1) {
@@ -94,9 +94,9 @@ const ContactRecord& VirtualTime::record_of(Hand& hand) {
 void VirtualTime::tick(TickGroup& group, double t, double h) {
   group.find_contact(t, h, [&](std::size_t hand) -> const ContactRecord& { return record_of(hands_[hand]); });
   for (std::size_t i = 0; i < group.members().size(); ++i) {
-    const auto [hand, ticks] = group.members()[i];
+    const auto [hand, haptic_loop] = group.members()[i];
     TickRecord tick;
-    result_.status = ticks->tick(t, h, group.contact(i), tick);
+    result_.status = haptic_loop->tick(t, h, group.contact(i), tick);
     if (!result_.status.ok()) return;
     bodies_.follow(hand, t, tick.tool, tick.tool_twist);
     bodies_.record_tick(hand, tick);

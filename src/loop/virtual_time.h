@@ -30,9 +30,9 @@ class VirtualTime {
     ContactRecord record;
   };
   struct Hand {
-    Hand(const scene::Description& d, ToolInstance& tool) : tick_s(tool.spec.tick_s), ticks(d, tool) {}
+    Hand(const scene::Description& d, ToolInstance& tool) : tick_s(tool.spec.tick_s), haptic_loop(d, tool) {}
     double tick_s;
-    HapticLoop ticks;
+    HapticLoop haptic_loop;
     ContactRecord in_force;
     std::deque<Coming> coming;
     long count = 0;  ///< Number of ticks.

@@ -119,29 +119,31 @@ double World::mechanical_energy() {
   const dynamics::StateView view = state.view();
   double energy = system.kinetic_energy(view) + system.potential_energy(view);
   for (const ToolInstance& tool : tools)
-    if (const TickTool* ticks = tool.with_ticks())
-      energy += ticks->tool.kinetic_energy() + ticks->tool.potential_energy(tool.handle.pose);
+    if (const PartitionedTool* partitioned = tool.partitioned())
+      energy += partitioned->tool.kinetic_energy() + partitioned->tool.potential_energy(tool.handle.pose);
   return energy;
 }
 
-bool World::monolithic() const { return !tools.empty() && tools.front().in_state(); }
-bool World::has_tool_of_ticks() const { return !tools.empty() && tools.front().with_ticks(); }
+bool World::monolithic() const { return !tools.empty() && tools.front().monolithic(); }
+bool World::has_tool_of_ticks() const { return !tools.empty() && tools.front().partitioned(); }
 int World::tool_frame_index() const { return tools.empty() ? -1 : tools.front().frame; }
 
 Pose World::tool_pose(std::size_t hand) const {
-  if (const TickTool* ticks = tools.at(hand).with_ticks()) return ticks->path->last().pose;
-  return tools[hand].in_state()->motion(state.view()).pose;
+  if (const PartitionedTool* partitioned = tools.at(hand).partitioned())
+    return partitioned->path->last().pose;
+  return tools[hand].monolithic()->motion(state.view()).pose;
 }
 
 Twist World::tool_twist(std::size_t hand) const {
-  if (const TickTool* ticks = tools.at(hand).with_ticks()) return ticks->path->last().twist;
-  return tools[hand].in_state()->motion(state.view()).twist;
+  if (const PartitionedTool* partitioned = tools.at(hand).partitioned())
+    return partitioned->path->last().twist;
+  return tools[hand].monolithic()->motion(state.view()).twist;
 }
 
 void World::refresh_contact() {
   PALPATE_CHECK(contact, "refresh_contact() called for a World without contact");
   for (ToolInstance& tool : tools)
-    if (TickTool* ticks = tool.with_ticks()) ticks->path->restart();
+    if (PartitionedTool* partitioned = tool.partitioned()) partitioned->path->restart();
   contact->refresh(state.view());
 }
 

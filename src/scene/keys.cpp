@@ -5,7 +5,7 @@
 namespace palpate::scene {
 namespace {
 
-/// Keys of every obstacle; the other keys depend on the type, by the registry of obstacles (kinds.cpp).
+/// Keys of every obstacle; the other keys depend on the type, by the registry of obstacles (check_kinds.cpp).
 const KeyTable<ObstacleSpec>& obstacle_keys() {
   static const KeyTable<ObstacleSpec> keys = {
       required(text("name", &ObstacleSpec::name, {}, "name used in [[contact]]")),

@@ -8,8 +8,8 @@
 #include "palpate/core/error.h"
 #include "palpate/scene/hands.h"
 #include "palpate/store/run_file.h"
-#include "session/frames.h"
 #include "session/movie_file.h"
+#include "session/movie_frames.h"
 
 namespace palpate::session {
 namespace {
@@ -32,10 +32,10 @@ class States {
     for (const scene::Hand& hand : hands) tools_.push_back(loop::tool_surface(*hand.tool, world.folder));
   }
 
-  Instant at(int step, Shade shade) const {
+  WorldSnapshot at(int step, Shade shade) const {
     const Points points = reader_.points(step);
     const VecX stress = shade == Shade::kStress ? reader_.stress(step) : VecX();
-    Instant out;
+    WorldSnapshot out;
     out.time = reader_.times_s()[static_cast<std::size_t>(step)];
     int part = 0;
     for (const loop::Body& body : world_.bodies) {
@@ -78,13 +78,13 @@ double between(const std::vector<double>& times, double fps, double slow, const 
 }
 
 /// Adds each state after the ticks up to its time, so that the handle has the pose of the hand at that time.
-void show(Frames& frames, const States& states, int steps, Shade shade,
+void show(MovieFrames& frames, const States& states, int steps, Shade shade,
           const std::vector<loop::TickRecord>& ticks, const Callbacks& callbacks) {
   auto tick = ticks.begin();
   for (int step = 0; step < steps && !callbacks.stopped(); ++step) {
-    Instant instant = states.at(step, shade);
-    for (; tick != ticks.end() && tick->time <= instant.time + 1e-9; ++tick) frames.tick(*tick);
-    frames.show(std::move(instant));
+    WorldSnapshot snapshot = states.at(step, shade);
+    for (; tick != ticks.end() && tick->time <= snapshot.time + 1e-9; ++tick) frames.tick(*tick);
+    frames.show(std::move(snapshot));
   }
   for (; tick != ticks.end(); ++tick) frames.tick(*tick);
 }
@@ -123,7 +123,7 @@ DrawnFrames draw_recorded_movie(const MovieOptions& options, const SceneReader& 
   check_movie(out.movie);
   const auto world = loop::assemble(description);
   const States states(states_file, *world, reader);
-  Frames frames(*world, folder.string(), shade, out.between_s, reader.times_s().back(), size);
+  MovieFrames frames(*world, folder.string(), shade, out.between_s, reader.times_s().back(), size);
   show(frames, states, reader.steps(), shade, ticks_of(description, folder), callbacks);
   const std::unique_ptr<FrameSink> sink = make_movie(out.movie, out.shown_s);
   frames.save(*world, {sink.get()}, callbacks, missing);

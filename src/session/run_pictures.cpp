@@ -32,7 +32,7 @@ PictureOptions check_pictures(const Options& options, const scene::Description& 
 
 RunPictures::RunPictures(loop::World& world, const Options& options, const PictureOptions& pictures,
                          const std::string& folder)
-    : options_(options), folder_(folder), snapshot_(pictures.shade) {
+    : options_(options), folder_(folder), picture_(pictures.shade) {
   if (options.draws_frames())
     frames_.emplace(world, folder, pictures.shade, pictures.between_s,
                     options.duration_s > 0.0 ? options.duration_s : world.description.duration_s,
@@ -42,8 +42,8 @@ RunPictures::RunPictures(loop::World& world, const Options& options, const Pictu
 
 std::vector<loop::Observer*> RunPictures::observers() {
   std::vector<loop::Observer*> out;
-  if (options_.picture) out.push_back(&snapshot_);
-  if (options_.contact_picture) out.push_back(&contact_);
+  if (options_.picture) out.push_back(&picture_);
+  if (options_.contact_picture) out.push_back(&contact_picture_);
   if (frames_) out.push_back(&*frames_);
   return out;
 }
@@ -52,10 +52,10 @@ void RunPictures::save_pictures(const loop::World& world, MissingOutputs& missin
   if (options_.picture) {
     const std::string path = (std::filesystem::path(folder_) / "picture.png").string();
     try {
-      snapshot_.save(world, path);
+      picture_.save(world, path);
     } catch (const Error& e) { missing.add("picture " + path, e.what()); }
   }
-  if (options_.contact_picture) contact_.save(world, folder_, missing);
+  if (options_.contact_picture) contact_picture_.save(world, folder_, missing);
 }
 
 std::optional<DrawnFrames> RunPictures::draw_frames(const loop::World& world, const Callbacks& callbacks,

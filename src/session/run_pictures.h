@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "session/callbacks.h"
-#include "session/contact_snapshot.h"
-#include "session/frames.h"
+#include "session/movie_frames.h"
 #include "session/options.h"
+#include "session/peak_contact_picture.h"
+#include "session/peak_force_picture.h"
 #include "session/run_output.h"
-#include "session/snapshot.h"
 
 /// Pictures and movies of a run, drawn when it is over.
 namespace palpate::session {
@@ -42,9 +42,9 @@ class RunPictures {
  private:
   const Options& options_;
   std::string folder_;
-  Snapshot snapshot_;
-  ContactSnapshot contact_;
-  std::optional<Frames> frames_;
+  PeakForcePicture picture_;
+  PeakContactPicture contact_picture_;
+  std::optional<MovieFrames> frames_;
 };
 
 }  // namespace palpate::session

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "loop/describe_fallbacks.h"
+#include "loop/penetration.h"
 #include "loop/summary.h"
 #include "palpate/scene/hands.h"
 #include "session/clock_figures.h"
@@ -41,10 +42,10 @@ void add_ticks(const loop::RunResult& result, Remarks& out) {
                     result.outside_ticks));
 }
 
-void add_overlaps(const loop::World& world, Remarks& out) {
-  const std::vector<loop::Overlap> overlaps = loop::overlaps_of(world);
+void add_penetrations(const loop::World& world, Remarks& out) {
+  const std::vector<loop::PenetrationReport> penetrations = loop::penetration_reports(world);
   std::string text;
-  for (const loop::Overlap& o : overlaps)
+  for (const loop::PenetrationReport& o : penetrations)
     if (o.deepest_m > 0.0)
       text += fmt::format("{}{} {:.3g} mm", text.empty() ? "" : ", ", o.pair, 1e3 * o.deepest_m);
   if (!text.empty()) out.push_back(fmt::format("deepest overlap: {}", text));
@@ -52,7 +53,7 @@ void add_overlaps(const loop::World& world, Remarks& out) {
 
 void add_quadrature(const loop::World& world, Remarks& out) {
   std::string text;
-  for (const loop::Overlap& o : loop::overlaps_of(world)) {
+  for (const loop::PenetrationReport& o : loop::penetration_reports(world)) {
     if (o.quadrature_error == 0.0) continue;
     text +=
         fmt::format("{}{} {:.2g} % of the largest force (bound; largest share of one point {:.2g} %)",
@@ -100,7 +101,7 @@ std::vector<std::string> run_remarks(const loop::World& world, const loop::RunRe
   add_ticks(result, out);
   if (result.buzz_n)
     out.push_back(fmt::format("buzz: {:.3g} N RMS of the force on the hand above 30 Hz", *result.buzz_n));
-  add_overlaps(world, out);
+  add_penetrations(world, out);
   add_quadrature(world, out);
   add_reduction_errors(world, out);
   if (result.port) add_port(*result.port, out);

@@ -71,7 +71,7 @@ void RunSession::open_folder() {
                 : !o.folder.empty() ? o.folder
                                     : (fs::path("out") / fs::path(description_.path).stem()).string();
   refuse_own_input(description_, ran_.folder);
-  lock_ = store::ResultFolder(ran_.folder);
+  lock_ = store::FolderLock(ran_.folder);
   if (!resumption_) {
     remove_run_files(description_, ran_.folder);
     remove_checkpoint(ran_.folder);

@@ -15,7 +15,7 @@
 #include "session/resumption.h"
 #include "session/run_output.h"
 #include "session/run_pictures.h"
-#include "store/result_folder.h"
+#include "store/folder_lock.h"
 #include "store/summary.h"
 
 namespace palpate::session {
@@ -72,7 +72,7 @@ class RunSession {
   std::unique_ptr<loop::World> world_;
   RunOutput ran_;
   RunIdentity identity_;
-  store::ResultFolder lock_;
+  store::FolderLock lock_;
   loop::PenetrationWarning penetration_warning_;
   std::optional<RunPictures> pictures_;
   std::optional<loop::Recorder> recorder_;

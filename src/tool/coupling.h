@@ -1,6 +1,6 @@
 #pragma once
 #include "palpate/core/pose.h"
-#include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/linearised_contact.h"
 #include "palpate/dynamics/rigid_body.h"
 #include "palpate/tool/spec.h"
 

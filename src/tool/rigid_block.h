@@ -19,8 +19,9 @@ using dynamics::rigid_block;
 struct HandleState {
   Pose pose;
   Twist twist;
-  /// Motion of a handle that depends on time alone.
 };
+
+/// Motion of a handle that depends on time alone.
 using HandlePath = std::function<HandleState(double t)>;
 
 /// Returns the wrench of the virtual coupling on the hand, before any limit: the force is opposite to the

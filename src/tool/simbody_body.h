@@ -1,8 +1,8 @@
 #pragma once
 #include "simbody/headers.h"
 
-#include "handle_path.h"
 #include "parameters.h"
+#include "tick_input.h"
 
 namespace palpate::tool {
 

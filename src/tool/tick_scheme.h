@@ -1,9 +1,9 @@
 #pragma once
 #include <memory>
 
-#include "handle_path.h"
 #include "palpate/core/registry.h"
 #include "palpate/dynamics/stepper.h"
+#include "tick_input.h"
 
 namespace palpate::tool {
 

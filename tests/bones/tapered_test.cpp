@@ -45,7 +45,7 @@ struct Solid {
 
 }  // namespace
 
-// Capsule and ball have closed forms (bone.cpp), which a tapered bone of equal radii must reproduce.
+// Capsule and ball have closed forms (shape.cpp), which a tapered bone of equal radii must reproduce.
 TEST(TaperedBone, OfOneRadiusIsTheCapsule) {
   BoneSpec capsule;
   capsule.name = "c";

@@ -17,8 +17,8 @@ using namespace palpate::haptic_stability;
 namespace {
 
 /// Returns a loop with the coupling as a virtual wall.
-HapticLoopModel wall(double stiffness, double damping, double device_damping = 0.1, int delay_ticks = 0) {
-  HapticLoopModel loop;
+OneAxisLoop wall(double stiffness, double damping, double device_damping = 0.1, int delay_ticks = 0) {
+  OneAxisLoop loop;
   loop.tool_held = true;
   loop.coupling_stiffness_n_m = stiffness;
   loop.coupling_damping_n_s_m = damping;
@@ -40,7 +40,7 @@ struct HeldMass {
 TEST(HapticTheory, no_stiffness_is_stable_without_damping) {
   int complex_pairs = 0;
   for (double K = 1.0; K < 1e5; K *= 3.0) {
-    const HapticLoopModel loop = wall(K, 0.0, 0.0);
+    const OneAxisLoop loop = wall(K, 0.0, 0.0);
     const double per_m = K * loop.tick_s * loop.tick_s / loop.device.mass_kg;
     EXPECT_FALSE(is_stable(loop)) << K;
     if (per_m > 16.0) continue;  // Real roots.
@@ -55,7 +55,7 @@ TEST(HapticTheory, no_stiffness_is_stable_without_damping) {
 // 2 (1 + a) = K (g1 - g0).
 TEST(HapticTheory, largest_stiffness_of_a_damped_mass) {
   for (const double b : {0.01, 0.1, 1.0, 10.0, 100.0, 300.0}) {
-    const HapticLoopModel loop = wall(1.0, 0.0, b);
+    const OneAxisLoop loop = wall(1.0, 0.0, b);
     const HeldMass G(loop.device.mass_kg, b, loop.tick_s);
     double exact = (1.0 - G.a) / G.g0;
     if (G.g1 > G.g0) exact = std::min(exact, 2.0 * (1.0 + G.a) / (G.g1 - G.g0));
@@ -70,8 +70,8 @@ TEST(HapticTheory, radius_is_that_of_the_characteristic_polynomial) {
   int stable = 0, unstable = 0;
   for (int i = 0; i < 300; ++i) {
     const int n = i % 4;
-    const HapticLoopModel loop = wall(300.0 * std::pow(30.0, exponent(random)),
-                                      std::pow(30.0, exponent(random)), std::pow(10.0, exponent(random)), n);
+    const OneAxisLoop loop = wall(300.0 * std::pow(30.0, exponent(random)), std::pow(30.0, exponent(random)),
+                                  std::pow(10.0, exponent(random)), n);
     const double T = loop.tick_s, K = loop.coupling_stiffness_n_m, B = loop.coupling_damping_n_s_m;
     const HeldMass G(loop.device.mass_kg, loop.device.damping_n_s_m, T);
     const int degree = n + 3;
@@ -94,7 +94,7 @@ TEST(HapticTheory, delay_bound_is_the_limit_of_small_damping) {
   for (const int n : {0, 1, 3}) {
     double coarse = 0.0;
     for (const double scale : {1.0, 0.1, 0.01}) {
-      HapticLoopModel loop = wall(1.0, 0.0, scale, n);
+      OneAxisLoop loop = wall(1.0, 0.0, scale, n);
       const double B = 2.0 * scale;
       loop.device.mass_kg = 1.0;
       const double error = std::abs(spectral_stiffness(loop, B) / delay_bound_stiffness(loop, B) - 1.0);
@@ -111,7 +111,7 @@ TEST(HapticTheory, passive_lies_within_stable_whatever_arm_holds_it) {
   int checked = 0;
   for (int i = 0; i < 400; ++i) {
     const double b = std::pow(10.0, 3.0 * unit(random) - 2.0);
-    HapticLoopModel loop = wall(1.0, b * (2.0 * unit(random) - 1.0), b, i % 3);
+    OneAxisLoop loop = wall(1.0, b * (2.0 * unit(random) - 1.0), b, i % 3);
     if (i % 2) {
       loop.device.arm_mass_kg = 2.0 * unit(random);
       loop.device.arm_damping_n_s_m = 5.0 * unit(random);
@@ -129,7 +129,7 @@ TEST(HapticTheory, passive_lies_within_stable_whatever_arm_holds_it) {
 
 // A rigidly held handle leaves the tool's limit, 4 m/h^2 - 2 b/h, and none for the implicit scheme.
 TEST(HapticTheory, tool_under_a_heavy_device_has_the_limit_of_its_scheme) {
-  HapticLoopModel loop;
+  OneAxisLoop loop;
   loop.device.mass_kg = 1e5;
   loop.device.damping_n_s_m = 1e6;
   loop.tool_integrator = "semi-implicit-euler";
@@ -239,7 +239,7 @@ TEST(RotationalLoop, takes_the_hand_s_own_figures) {
 TEST(ZWidth, simulated_and_exact_walls_are_the_same) {
   ZWidthOptions options;
   options.rows = 5;
-  const ZWidth z = z_width(HapticLoopModel{}, options);
+  const ZWidth z = z_width(OneAxisLoop{}, options);
   EXPECT_EQ(z.rows.size(), 5u);
   EXPECT_TRUE(z.passive_within_stable());
   EXPECT_GT(z.rows[0].passive, 0.0);
@@ -247,7 +247,7 @@ TEST(ZWidth, simulated_and_exact_walls_are_the_same) {
 }
 
 TEST(ZWidth, verdicts_on_a_scene_s_own_loop) {
-  HapticLoopModel loop;
+  OneAxisLoop loop;
   const ToolContactRange range{{10.0, 0.0}, {1000.0, 0.0}};
   auto points = operating_points(loop, range, 4.0);
   ASSERT_EQ(points.size(), 3u);
@@ -256,7 +256,7 @@ TEST(ZWidth, verdicts_on_a_scene_s_own_loop) {
     EXPECT_NE(p.words(loop.tick_s).find("let go, but not passive: some hand"), std::string::npos) << p.name;
   }
   EXPECT_NEAR(points[2].series, 1000.0 * 300.0 / 1300.0, 1e-9);
-  HapticLoopModel in_arm = loop;
+  OneAxisLoop in_arm = loop;
   in_arm.device.arm_stiffness_n_m = 500.0;
   in_arm.device.arm_damping_n_s_m = 5.0;
   EXPECT_NE(operating_points(in_arm, range, 1.0)[0].words(loop.tick_s).find("held so, but not"),
@@ -273,7 +273,7 @@ TEST(ZWidth, verdicts_on_a_scene_s_own_loop) {
 namespace {
 
 /// Computes both limits, and checks that they agree to 2 %.
-void expect_same_limit(const HapticLoopModel& loop, double damping, const std::string& what) {
+void expect_same_limit(const OneAxisLoop& loop, double damping, const std::string& what) {
   const double theory = spectral_stiffness(loop, damping), found = simulated_stiffness(loop, damping, 4.0);
   ASSERT_TRUE(std::isfinite(theory) && theory > 0.0) << what;
   EXPECT_NEAR(found / theory, 1.0, 0.02) << what << ": " << theory << " N/m";
@@ -285,7 +285,7 @@ TEST(HapticSimulation, finds_the_largest_wall_of_theory) {
   for (const int n : {0, 1, 2})
     for (const double B : {0.0, 1.0, 5.0})
       expect_same_limit(wall(1.0, B, 0.1, n), B, fmt::format("delay {}, B {}", n, B));
-  HapticLoopModel held = wall(1.0, 0.0);
+  OneAxisLoop held = wall(1.0, 0.0);
   held.device.arm_mass_kg = 0.8;
   held.device.arm_damping_n_s_m = 5.5;
   held.device.arm_stiffness_n_m = 568.0;
@@ -295,7 +295,7 @@ TEST(HapticSimulation, finds_the_largest_wall_of_theory) {
 TEST(HapticSimulation, finds_the_largest_coupling_of_a_tool_pressed_on_a_one_sided_wall) {
   for (const char* scheme : {"linearly-implicit-euler", "semi-implicit-euler"})
     for (const double K : {1e3, 1e4}) {
-      HapticLoopModel loop;
+      OneAxisLoop loop;
       loop.tool_integrator = scheme;
       loop.contact_stiffness_n_m = K;
       loop.contact_damping_n_s_m = 1.0;

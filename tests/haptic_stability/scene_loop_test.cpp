@@ -131,7 +131,7 @@ TEST(ZWidth, takes_the_scene_s_device) {
   scene::Description d;
   d.tool.emplace();
   d.tool->tick_s = 1e-3;
-  const HapticLoopModel usual = loop_of(d);
+  const OneAxisLoop usual = loop_of(d);
   EXPECT_EQ(usual.device.arm_stiffness_n_m, 0.0);
   d.device.emplace();
   d.device->profile = "premium-1.5";
@@ -145,7 +145,7 @@ TEST(ZWidth, takes_the_scene_s_device) {
   d.device->arm_damping_n_s_m = 4.0;
   d.device->arm_stiffness_n_m = 300.0;
   d.device->delay_s = 0.0021;
-  const HapticLoopModel loop = loop_of(d);
+  const OneAxisLoop loop = loop_of(d);
   EXPECT_EQ(loop.device.mass_kg, 0.2);
   EXPECT_EQ(loop.device.damping_n_s_m, 0.7);
   EXPECT_EQ(loop.device.total_mass(), 0.7);

@@ -216,7 +216,7 @@ TEST(Bones, TheToolOfAMonolithicSceneCarriesNodes) {
   const auto world = loop::assemble(d);
   ASSERT_TRUE(world->monolithic());
   ASSERT_TRUE(loop::run(*world, {}).status.ok());
-  const auto& tool = *world->state.layout().find(world->tools[0].in_state()->block_id);
+  const auto& tool = *world->state.layout().find(world->tools[0].monolithic()->block_id);
   EXPECT_GT(world->state.q()[tool.q_offset + 6], d.tool->position_m.z() + 1e-3) << "it was lifted";
   VecX f, a;
   world->system.force(world->state.view(), f);

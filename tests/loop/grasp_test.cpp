@@ -163,14 +163,14 @@ TEST(Grasp, IsRetracedBitForBit) {
     ASSERT_TRUE(loop::run(*world, options).status.ok());
   }
   const loop::HapticRecord record = loop::read_haptic_record(path);
-  const auto relinearise = loop::retrace(d, {record});
-  ASSERT_EQ(relinearise.size(), record.ticks.size());
-  for (std::size_t i = 0; i < relinearise.size(); ++i) {
-    ASSERT_EQ(relinearise[i].device.force, record.ticks[i].device.force) << i;
-    ASSERT_EQ(relinearise[i].contact.moment, record.ticks[i].contact.moment) << i;
-    ASSERT_EQ(relinearise[i].switches, record.ticks[i].switches) << i;
+  const auto retraced = loop::retrace(d, {record});
+  ASSERT_EQ(retraced.size(), record.ticks.size());
+  for (std::size_t i = 0; i < retraced.size(); ++i) {
+    ASSERT_EQ(retraced[i].device.force, record.ticks[i].device.force) << i;
+    ASSERT_EQ(retraced[i].contact.moment, record.ticks[i].contact.moment) << i;
+    ASSERT_EQ(retraced[i].switches, record.ticks[i].switches) << i;
   }
-  EXPECT_GT(pull(relinearise), 0.3);
+  EXPECT_GT(pull(retraced), 0.3);
   EXPECT_EQ(record.ticks.front().switches, 0u);
   EXPECT_EQ(record.ticks.back().switches, 4u);
   // the recorded hand closes the same switch
@@ -196,7 +196,7 @@ TEST(Grasp, InRealTime) {
   EXPECT_NEAR(pull(ticks.all), pull(ticks_of(d)), 0.1);
 }
 
-// A record's first tick with the length of the period is the condensed response (touch_reduction_test.cpp),
+// A record's first tick with the length of the period is the condensed response (model_reduction_test.cpp),
 // for held samples as well as for pressing ones: pulled off, where only the grasp acts.
 TEST(Grasp, ModesAnswerWhatIsHeld) {
   constexpr double kPeriod = 0.01;
@@ -213,7 +213,7 @@ TEST(Grasp, ModesAnswerWhatIsHeld) {
     EXPECT_GT(world->contact->statistics().grasps.points, 3);
     Pose away = world->tool_pose();
     away.translation += Vec3(1e-4, 0.0, pull);
-    loop::TickTool& ticks_of_tool = *world->tools[0].with_ticks();
+    loop::PartitionedTool& ticks_of_tool = *world->tools[0].partitioned();
     ticks_of_tool.path->clear();
     ticks_of_tool.path->append(0.0, away, {});
     ticks_of_tool.tool.set_state(0.0, away, {});

@@ -17,7 +17,7 @@ using namespace palpate::small_scenes;
 
 namespace {
 
-loop::TickTool& ticks_of(loop::World& world) { return *world.tools[0].with_ticks(); }
+loop::PartitionedTool& ticks_of(loop::World& world) { return *world.tools[0].partitioned(); }
 
 dynamics::LinearisedContact record_of(loop::World& world, std::uint64_t version, double period_s,
                                       long& frozen_fallbacks) {

@@ -7,6 +7,7 @@
 #include "contact/sources.h"
 #include "contact/together.h"
 #include "core/counters.h"
+#include "loop/penetration.h"
 #include "loop/scene_checks.h"
 #include "loop/small_scenes.h"
 #include "loop/summary.h"
@@ -247,14 +248,14 @@ TEST(OwnContactScene, DeepOverlapsAreTold) {
     if (is_deep)
       for (JointSpec& joint : d.bodies[0].skeleton->joints) joint.keyframes[1].rotation_vector_rad *= 1.5;
     const auto world = loop::assemble(d);
-    EXPECT_FALSE(loop::overlaps_of(*world)[0].too_deep());
+    EXPECT_FALSE(loop::penetration_reports(*world)[0].too_deep());
     EXPECT_TRUE(loop::run(*world, {}).status.ok());
-    const loop::Overlap overlap = loop::overlaps_of(*world)[0];
+    const loop::PenetrationReport penetration = loop::penetration_reports(*world)[0];
     const TriMesh& skin = world->bodies[0].skin->rest;
-    EXPECT_TRUE(overlap.of_itself);
-    EXPECT_NEAR(overlap.half_width_m, 0.75 * 0.25 * contact::lengths_of(skin).radius, 1e-12);
-    EXPECT_GT(overlap.deepest_m, 1e-3);
-    EXPECT_EQ(overlap.too_deep(), is_deep) << overlap.deepest_m;
+    EXPECT_TRUE(penetration.of_itself);
+    EXPECT_NEAR(penetration.half_width_m, 0.75 * 0.25 * contact::lengths_of(skin).radius, 1e-12);
+    EXPECT_GT(penetration.deepest_m, 1e-3);
+    EXPECT_EQ(penetration.too_deep(), is_deep) << penetration.deepest_m;
   }
 }
 

@@ -44,7 +44,7 @@ Answer answer(scene::Description d, const State& state, double error) {
   d.exchange.linearisation = "points";
   d.exchange.linearisation_error = error;
   const auto world = loop::assemble(d);
-  contact::TrajectoryFrame& path = *world->tools[0].with_ticks()->path;
+  contact::TrajectoryFrame& path = *world->tools[0].partitioned()->path;
   path.clear();
   path.append(0.0, state.tool.pose, state.tool.twist);
   world->state.q() = state.q;

@@ -109,11 +109,11 @@ Recomputed recompute(const std::vector<loop::TickRecord>& ticks, const DeviceSpe
 
 void expect_recomputed(const scene::Description& d, Mode mode, KeptRun* out = nullptr) {
   const KeptRun kept = run(d, mode);
-  const Recomputed relinearise = recompute(kept.record.ticks, *d.device);
+  const Recomputed recomputed = recompute(kept.record.ticks, *d.device);
   EXPECT_GT(kept.printed.work, 1e-5);
-  EXPECT_NEAR(kept.printed.energy, relinearise.energy, 1e-9 * relinearise.work);
-  EXPECT_NEAR(kept.printed.least, relinearise.least, 1e-9 * relinearise.work);
-  EXPECT_NEAR(kept.printed.work, relinearise.work, 1e-9 * relinearise.work);
+  EXPECT_NEAR(kept.printed.energy, recomputed.energy, 1e-9 * recomputed.work);
+  EXPECT_NEAR(kept.printed.least, recomputed.least, 1e-9 * recomputed.work);
+  EXPECT_NEAR(kept.printed.work, recomputed.work, 1e-9 * recomputed.work);
   if (out) *out = kept;
 }
 

@@ -24,7 +24,7 @@ inline std::unique_ptr<loop::World> touching(scene::Description d, const std::st
   d.exchange.linearisation_error = error;
   d.tool->tick_s = kPeriod;
   auto world = loop::assemble(d);
-  contact::TrajectoryFrame& path = *world->tools[0].with_ticks()->path;
+  contact::TrajectoryFrame& path = *world->tools[0].partitioned()->path;
   const Pose pose = world->tool_pose();
   path.clear();
   path.append(0.0, pose, {Vec3(0, 0, spin), Vec3::Zero()});

@@ -145,9 +145,9 @@ TEST(Replay, RetracesARunUnderThePassivityController) {
 TEST(Replay, TheRecordedHandMovesAsTheHandDid) {
   const scene::Description d = pressed();
   const loop::HapticRecord first = recorded(d, false, "first.h5");
-  const loop::HapticRecord relinearise = recorded(d, false, "again.h5", loop::recorded_hand(first));
-  expect_equal(relinearise.ticks, first.ticks);
-  EXPECT_EQ(relinearise.start.handle.translation, first.start.handle.translation);
+  const loop::HapticRecord repeated = recorded(d, false, "again.h5", loop::recorded_hand(first));
+  expect_equal(repeated.ticks, first.ticks);
+  EXPECT_EQ(repeated.start.handle.translation, first.start.handle.translation);
 }
 
 // Between ticks the hand is the cubic of its poses and twists; a minimum-jerk path differs from it by h^4 /
@@ -208,13 +208,13 @@ TEST(Replay, RetracesAForceThatSetsInAnew) {
   loop::HapticRecord record = recorded(d, false, "ramped.h5");
   for (loop::TickRecord& tick : record.ticks)
     if (&tick - record.ticks.data() == 120) tick.ramps_in = true, tick.left_out = 77;
-  const auto relinearise = loop::retrace(d, {record});
-  EXPECT_EQ(relinearise[119].device.force, record.ticks[119].device.force);
-  EXPECT_TRUE(relinearise[120].ramps_in);
-  EXPECT_EQ(relinearise[120].left_out, 77u);
-  EXPECT_EQ(relinearise[120].device.force.norm(), 0.0);
-  EXPECT_LT(relinearise[125].device.force.norm(), 0.5 * record.ticks[125].device.force.norm());
-  EXPECT_NEAR(relinearise[145].device.force.norm(), record.ticks[145].device.force.norm(), 1e-12);
+  const auto retraced = loop::retrace(d, {record});
+  EXPECT_EQ(retraced[119].device.force, record.ticks[119].device.force);
+  EXPECT_TRUE(retraced[120].ramps_in);
+  EXPECT_EQ(retraced[120].left_out, 77u);
+  EXPECT_EQ(retraced[120].device.force.norm(), 0.0);
+  EXPECT_LT(retraced[125].device.force.norm(), 0.5 * record.ticks[125].device.force.norm());
+  EXPECT_NEAR(retraced[145].device.force.norm(), record.ticks[145].device.force.norm(), 1e-12);
 }
 
 // Monolithic: one integrator follows the recorded hand at arbitrary times.

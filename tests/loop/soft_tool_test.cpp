@@ -173,7 +173,7 @@ TEST(SoftTool, TakesItsBodyAlong) {
   const Pose moved{Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())) * before.rotation,
                    before.translation + Vec3(0.05, -0.03, 0.02)};
   const Twist twist_now{Vec3(-1, 2, 0.5), Vec3(0.1, -0.2, 0.3)};
-  loop::carry_along(world->state, world->tools[0].with_ticks()->ties, {before, twist}, {moved, twist_now});
+  loop::carry_along(world->state, world->tools[0].partitioned()->ties, {before, twist}, {moved, twist_now});
   const Points now = world->positions(world->bodies[0]);
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     const Vec3 place = before.inverse() * Vec3(x.col(i));

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "loop/penetration.h"
 #include "loop/small_scenes.h"
-#include "loop/summary.h"
 #include "palpate/loop/run.h"
 
 /// Shapes that a body's points miss: thinner than its mesh, smaller than its elements, or inside of it.
@@ -53,7 +53,7 @@ TEST(ThinShapes, ABlockComesToLieOnABarThinnerThanItself) {
   ASSERT_TRUE(loop::run(*world, {}).status.ok());
   EXPECT_GT(mean_height(*world), 0.04);  // free fall: 0.056 - 0.44
   EXPECT_LT(mean_height(*world), 0.056);
-  EXPECT_LT(loop::overlaps_of(*world)[0].deepest_m, 0.005);
+  EXPECT_LT(loop::penetration_reports(*world)[0].deepest_m, 0.005);
 }
 
 /// A round tool at `z` with its handle there, or moving to `end`, over a soft ball of 50 mm that rests on its
@@ -129,7 +129,7 @@ TEST(ThinShapes, AToolThatBeginsWithinABodyIsPushedOut) {
   options.observers = {&largest};
   ASSERT_TRUE(loop::run(*world, options).status.ok());
   EXPECT_GT(largest.force_n, 1.0);
-  EXPECT_GT(loop::overlaps_of(*world)[0].deepest_m, 0.03);
+  EXPECT_GT(loop::penetration_reports(*world)[0].deepest_m, 0.03);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "loop/contact_record.h"
 #include "loop/tick_group.h"
 #include "malloc_count.h"
-#include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/linearised_contact.h"
 #include "palpate/loop/run.h"
 #include "pressing_hand.h"
 

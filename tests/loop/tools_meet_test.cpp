@@ -308,14 +308,14 @@ TEST(ToolsMeet, AreReplayedTogether) {
   }
   const std::vector<loop::HapticRecord> records = loop::read_haptic_records(folder.string(), d);
   for (const std::size_t hand : {0, 1}) {
-    const auto relinearise = loop::retrace(d, records, hand);
-    ASSERT_EQ(relinearise.size(), both.of[hand].size());
-    for (std::size_t i = 0; i < relinearise.size(); ++i) {
-      ASSERT_EQ(relinearise[i].device.force, both.of[hand][i].device.force)
-          << hand << " at " << relinearise[i].time;
-      ASSERT_EQ(relinearise[i].contact.force, both.of[hand][i].contact.force);
+    const auto retraced = loop::retrace(d, records, hand);
+    ASSERT_EQ(retraced.size(), both.of[hand].size());
+    for (std::size_t i = 0; i < retraced.size(); ++i) {
+      ASSERT_EQ(retraced[i].device.force, both.of[hand][i].device.force)
+          << hand << " at " << retraced[i].time;
+      ASSERT_EQ(retraced[i].contact.force, both.of[hand][i].contact.force);
     }
-    EXPECT_GT(relinearise.back().contact.force.norm(), 0.3);
+    EXPECT_GT(retraced.back().contact.force.norm(), 0.3);
   }
 }
 

@@ -332,14 +332,14 @@ TEST(TwoHands, AreRecordedEach) {
   ASSERT_EQ(records.size(), 2u);
   for (const std::size_t hand : {0, 1}) {
     const auto& felt = both.of[hand];
-    const auto relinearise = loop::retrace(d, records, hand);
-    ASSERT_EQ(relinearise.size(), felt.size());
+    const auto retraced = loop::retrace(d, records, hand);
+    ASSERT_EQ(retraced.size(), felt.size());
     EXPECT_EQ(records[hand].exchanges.size(), static_cast<std::size_t>(result.periods));
     std::size_t touching = 0;
     for (std::size_t i = 0; i < felt.size(); ++i) {
-      EXPECT_EQ(relinearise[i].device.force, felt[i].device.force) << hand << " at " << felt[i].time;
-      EXPECT_EQ(relinearise[i].device.moment, felt[i].device.moment);
-      EXPECT_EQ(relinearise[i].tool.translation, felt[i].tool.translation);
+      EXPECT_EQ(retraced[i].device.force, felt[i].device.force) << hand << " at " << felt[i].time;
+      EXPECT_EQ(retraced[i].device.moment, felt[i].device.moment);
+      EXPECT_EQ(retraced[i].tool.translation, felt[i].tool.translation);
       touching += felt[i].contact.force.norm() > 0.1;
     }
     EXPECT_GT(touching, felt.size() / 4);

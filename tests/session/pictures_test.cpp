@@ -9,12 +9,12 @@
 #include "loop/small_scenes.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/generators.h"
-#include "session/contact_snapshot.h"
 #include "session/frame_folder.h"
-#include "session/frames.h"
 #include "session/missing_outputs.h"
 #include "session/movie_file.h"
-#include "session/snapshot.h"
+#include "session/movie_frames.h"
+#include "session/peak_contact_picture.h"
+#include "session/peak_force_picture.h"
 #include "store/model_file.h"
 #include "temporary_folder.h"
 
@@ -103,10 +103,10 @@ class Pictures : public testing::Test {
 
 TEST_F(Pictures, ContactHasProxiesInOnePanelAndVerticesInTheOther) {
   const auto world = loop::assemble(blocks(true));
-  session::ContactSnapshot snapshot;
-  ASSERT_TRUE(run(*world, snapshot).status.ok());
+  session::PeakContactPicture peak;
+  ASSERT_TRUE(run(*world, peak).status.ok());
   session::MissingOutputs missing;
-  snapshot.save(*world, folder_.path().string(), missing);
+  peak.save(*world, folder_.path().string(), missing);
   EXPECT_TRUE(missing.empty());
   const Png contact = read_png(folder_ / "contact.png");
   ASSERT_EQ(contact.width, 2 * contact.height);
@@ -119,10 +119,10 @@ TEST_F(Pictures, ContactHasProxiesInOnePanelAndVerticesInTheOther) {
 
 TEST_F(Pictures, WithoutProxiesNoHullsAreDrawn) {
   const auto world = loop::assemble(blocks(false));
-  session::ContactSnapshot snapshot;
-  ASSERT_TRUE(run(*world, snapshot).status.ok());
+  session::PeakContactPicture peak;
+  ASSERT_TRUE(run(*world, peak).status.ok());
   session::MissingOutputs missing;
-  snapshot.save(*world, folder_.path().string(), missing);
+  peak.save(*world, folder_.path().string(), missing);
   EXPECT_TRUE(missing.empty());
   const Png contact = read_png(folder_ / "contact.png");
   EXPECT_EQ(contact.count(0, contact.width / 2, is_blue), 0);
@@ -132,16 +132,16 @@ TEST_F(Pictures, WithoutProxiesNoHullsAreDrawn) {
 
 TEST_F(Pictures, APictureOfDisplacementHasNeitherHullsNorVertices) {
   const auto world = loop::assemble(blocks(true));
-  session::Snapshot snapshot(session::Shade::kPenetration);
-  ASSERT_TRUE(run(*world, snapshot).status.ok());
-  snapshot.save(*world, (folder_ / "picture.png").string());
+  session::PeakForcePicture peak(session::Shade::kPenetration);
+  ASSERT_TRUE(run(*world, peak).status.ok());
+  peak.save(*world, (folder_ / "picture.png").string());
   const Png picture = read_png(folder_ / "picture.png");
   EXPECT_EQ(picture.count(0, picture.width, is_red), 0);
   EXPECT_EQ(picture.count(0, picture.width, is_orange), 0);
 }
 
 #ifdef PALPATE_HAS_TOOL
-// The snapshot shows the largest force of a hand that presses briefly and retreats, in both schemes.
+// The picture shows the largest force of a hand that presses briefly and retreats, in both schemes.
 TEST_F(Pictures, APictureIsOfTheLargestForceInBothSchemes) {
   for (const char* scheme : {"partitioned", "monolithic"}) {
     scene::Description d = small_scenes::pressed_block(-1e-4);
@@ -153,10 +153,10 @@ TEST_F(Pictures, APictureIsOfTheLargestForceInBothSchemes) {
     d.duration_s = 0.25;
     d.exchange.scheme = scheme;
     const auto world = loop::assemble(d);
-    session::Snapshot snapshot(session::Shade::kDisplacement);
-    ASSERT_TRUE(run(*world, snapshot).status.ok());
-    EXPECT_GT(snapshot.time(), 0.0) << scheme;
-    EXPECT_LT(snapshot.time(), 0.12) << scheme;
+    session::PeakForcePicture peak(session::Shade::kDisplacement);
+    ASSERT_TRUE(run(*world, peak).status.ok());
+    EXPECT_GT(peak.time(), 0.0) << scheme;
+    EXPECT_LT(peak.time(), 0.12) << scheme;
   }
 }
 #endif
@@ -166,10 +166,10 @@ TEST_F(Pictures, TheDeepestPixelsHaveTheColourOfTheMaximum) {
   scene::Description d = blocks(true);
   d.duration_s = 0.01;  // one contact query, of the initial state
   const auto world = loop::assemble(d);
-  session::ContactSnapshot snapshot;
-  ASSERT_TRUE(run(*world, snapshot).status.ok());
+  session::PeakContactPicture peak;
+  ASSERT_TRUE(run(*world, peak).status.ok());
   session::MissingOutputs missing;
-  snapshot.save(*world, folder_.path().string(), missing);
+  peak.save(*world, folder_.path().string(), missing);
   const Png depth = read_png(folder_ / "depth.png");
   // 23 mm x 29 mm of the blocks' faces overlap
   const int greatest = depth.count(0, depth.width, is_greatest);
@@ -179,10 +179,10 @@ TEST_F(Pictures, TheDeepestPixelsHaveTheColourOfTheMaximum) {
 TEST_F(Pictures, NothingThatTouchesIsSaidToBeMissing) {
   scene::Description d = blocks(true, -5e-3);
   const auto world = loop::assemble(d);
-  session::ContactSnapshot snapshot;
-  ASSERT_TRUE(run(*world, snapshot).status.ok());
+  session::PeakContactPicture peak;
+  ASSERT_TRUE(run(*world, peak).status.ok());
   session::MissingOutputs missing;
-  snapshot.save(*world, folder_.path().string(), missing);
+  peak.save(*world, folder_.path().string(), missing);
   EXPECT_FALSE(missing.empty());
   EXPECT_FALSE(std::filesystem::exists(folder_ / "contact.png"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "depth.png"));
@@ -195,8 +195,8 @@ TEST_F(Pictures, FramesShareCameraAndColours) {
   const auto world = loop::assemble(d);
   const double between_s = session::between_frames(d, 0.0);
   EXPECT_EQ(between_s, 0.01);
-  session::Frames frames(*world, folder_.path().string(), session::Shade::kDisplacement, between_s,
-                         d.duration_s);
+  session::MovieFrames frames(*world, folder_.path().string(), session::Shade::kDisplacement, between_s,
+                              d.duration_s);
   ASSERT_TRUE(run(*world, frames).status.ok());
   EXPECT_EQ(frames.count(), 5);
   session::MissingOutputs missing;
@@ -257,12 +257,12 @@ TEST_F(Pictures, SizesAreEvenNumbersOfPixels) {
     EXPECT_THROW(session::frame_size(text), Error) << text;
 }
 
-// In real time, bodies that fell behind are held: frames at instants without a state repeat the last state.
+// In real time, bodies that fell behind are held: frames at times without a state repeat the last state.
 TEST_F(Pictures, FramesKeepTheirTimeWhereBodiesStandStill) {
   const scene::Description d = blocks(false);
   const auto world = loop::assemble(d);
-  session::Frames frames(*world, folder_.path().string(), session::Shade::kDisplacement, 0.02, 0.2,
-                         {240, 218});
+  session::MovieFrames frames(*world, folder_.path().string(), session::Shade::kDisplacement, 0.02, 0.2,
+                              {240, 218});
   for (const double t : {0.0, 0.01, 0.02, 0.09, 0.10, 0.2}) frames.period(*world, t);
   EXPECT_EQ(frames.count(), 10);  // states at 0, 20, 90 (for 80) and 100 ms; the end of the run adds none
   session::MissingOutputs missing;
@@ -275,23 +275,23 @@ TEST_F(Pictures, FramesKeepTheirTimeWhereBodiesStandStill) {
 }
 
 TEST_F(Pictures, InstantsComeBackFromDiskBitForBit) {
-  session::Instant first;
+  session::WorldSnapshot first;
   first.time = 0.1;
   first.nodes = {Points::Random(3, 7), Points::Random(3, 2)};
   first.stress = {VecX::Random(7), VecX::Random(2)};
   first.depths = {{{3, 0.5f}, {5, 0.25f}}, {}};
   first.bones = {Pose{Quat(0.5, 0.5, 0.5, 0.5), Vec3(1, 2, 3)}};
   first.tools = {{Quat(0.0, 0.6, 0.8, 0.0), Vec3(4, 5, 6)}};
-  session::Instant second;
+  session::WorldSnapshot second;
   second.time = 0.2;
   second.handle = Pose{Quat(0.6, 0.0, 0.0, 0.8), Vec3(7, 8, 9)};
-  session::InstantSpool spool(folder_.path().string());
+  session::SnapshotSpool spool(folder_.path().string());
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));  // the spool file is unlinked
   spool.append(first);
   spool.append(second);
   for (int time = 0; time < 2; ++time) {  // may be read repeatedly
     spool.rewind();
-    session::Instant read;
+    session::WorldSnapshot read;
     ASSERT_TRUE(spool.next(read));
     EXPECT_EQ(read.time, first.time);
     EXPECT_EQ(read.nodes, first.nodes);
@@ -309,13 +309,13 @@ TEST_F(Pictures, InstantsComeBackFromDiskBitForBit) {
     EXPECT_EQ(read.handle->rotation.coeffs(), second.handle->rotation.coeffs());
     EXPECT_FALSE(spool.next(read));
   }
-  EXPECT_THROW(session::InstantSpool((folder_ / "none").string()), Error);
+  EXPECT_THROW(session::SnapshotSpool((folder_ / "none").string()), Error);
 }
 
 TEST_F(Pictures, AStopEndsDrawingAndTheMovieIsComplete) {
   const auto world = loop::assemble(blocks(false));
-  session::Frames frames(*world, folder_.path().string(), session::Shade::kDisplacement, 0.01, 0.04,
-                         {240, 218});
+  session::MovieFrames frames(*world, folder_.path().string(), session::Shade::kDisplacement, 0.01, 0.04,
+                              {240, 218});
   ASSERT_TRUE(run(*world, frames).status.ok());
   std::atomic<bool> stop{false};
   session::Callbacks callbacks;
@@ -331,8 +331,8 @@ TEST_F(Pictures, AStopEndsDrawingAndTheMovieIsComplete) {
 
 TEST_F(Pictures, AFrameThatCannotBeWrittenIsNamed) {
   const auto world = loop::assemble(blocks(false));
-  session::Frames frames(*world, folder_.path().string(), session::Shade::kDisplacement, 0.01, 0.04,
-                         {240, 218});
+  session::MovieFrames frames(*world, folder_.path().string(), session::Shade::kDisplacement, 0.01, 0.04,
+                              {240, 218});
   ASSERT_TRUE(run(*world, frames).status.ok());
   session::MissingOutputs missing;
   std::filesystem::create_directories(folder_ / "frames/0002.part");  // blocks the temporary file

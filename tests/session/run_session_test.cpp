@@ -214,7 +214,7 @@ TEST_F(RunSession, ALockedFolderIsRefusedAndKept) {
   session::Options options = options_into("out");
   const scene::Description description = load(std::string(kBar) + kRecord, options);
   {
-    const store::ResultFolder lock(options.folder);
+    const store::FolderLock lock(options.folder);
     const std::string message = message_of(options, description);
     EXPECT_NE(message.find("is writing into this folder"), std::string::npos) << message;
     EXPECT_TRUE(fs::is_empty(options.folder));

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "core/so3.h"
-#include "handle_path.h"
+#include "tick_input.h"
 #include "tool_fixtures.h"
 
 using namespace palpate;

@@ -71,9 +71,9 @@ class ContactForce : public dynamics::ForceTerm,
   bool refresh(const dynamics::StateView& state) override;
   /// One root function for each sample whose pressure sets in with a kink (onset_width_m = 0): negative while
   /// the sample presses, positive while it does not, and zero exactly where it opens or closes. Because the
-  /// damper is cut off during separation, that is not where the gap closes: see events() in
-  /// contact_force.cpp. The number of functions is constant between two refreshes. A refresh may change it,
-  /// even one that changes no force and returns false.
+  /// damper is cut off during separation, that is not where the gap closes: see pressing() in pressure.cpp.
+  /// The number of functions is constant between two refreshes. A refresh may change it, even one that
+  /// changes no force and returns false.
   int event_count() const override;
   std::uint64_t events_version() const override;
   void events(const dynamics::StateView& state, double* g) override;

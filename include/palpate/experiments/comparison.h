@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/experiments/exchange.h"
+#include "palpate/experiments/exchange_period_study.h"
 #include "palpate/experiments/status.h"
 #include "palpate/experiments/trajectory.h"
 

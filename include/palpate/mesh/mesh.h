@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// Tetrahedral mesh: every node is used, every volume is positive (checks.h ensures it or throws).
+/// Tetrahedral mesh: every node is used, every volume is positive (tet_checks.h ensures it or throws).
 struct TetMesh {
   Points nodes;  ///< rest positions [m]
   Tets tets;     ///< nodes of each tetrahedron

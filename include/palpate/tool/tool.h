@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "palpate/core/pose.h"
-#include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/linearised_contact.h"
 #include "palpate/dynamics/rigid_body.h"
 #include "palpate/dynamics/stepper.h"
 #include "palpate/tool/spec.h"

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "experiments/compare/ledger.h"
+#include "experiments/compare/comparison_tasks.h"
 #include "experiments/compare/run_comparison.h"
 
 namespace palpate::compare {
@@ -52,7 +52,7 @@ Comparison run(const std::vector<scene::Description>& scenes, const CompareOptio
       scenes.size(), {options.linear_solvers == LinearSolvers::kSame ? options.linear_solver : ""});
   std::vector<std::vector<ComparePoint>> tried(scenes.size());
   if (options.linear_solvers == LinearSolvers::kBest) {
-    Ledger trials(scenes, options, choices, true);
+    ComparisonTasks trials(scenes, options, choices, true);
     outcome = experiments::run(trials, place, engine);
     Comparison done = trials.finish();
     for (std::size_t s = 0; s < scenes.size(); ++s) {
@@ -63,11 +63,11 @@ Comparison run(const std::vector<scene::Description>& scenes, const CompareOptio
     const bool planned = !place.plan.empty() && !outcome.other_plan;
     if (planned || (place.submit && !outcome.complete)) return {};
   }
-  Ledger ledger(scenes, options, choices, false);
+  ComparisonTasks tasks(scenes, options, choices, false);
   const std::size_t reused_by_trials = outcome.reused;
-  outcome = experiments::run(ledger, place, engine);
+  outcome = experiments::run(tasks, place, engine);
   outcome.reused += reused_by_trials;
-  Comparison out = ledger.finish();
+  Comparison out = tasks.finish();
   for (std::size_t s = 0; s < scenes.size(); ++s) out.scenes[s].trials = std::move(tried[s]);
   out.reused = static_cast<long>(outcome.reused);
   out.stopped = outcome.stopped;

@@ -10,7 +10,7 @@
 #include "experiments/compare/monolithic.h"
 #include "experiments/compare/plan.h"
 #include "experiments/compare/run.h"
-#include "experiments/compare/work.h"
+#include "experiments/compare/task_process.h"
 #include "loop/result_key.h"
 #include "palpate/core/error.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/archive_bytes.h"
-#include "experiments/compare/archives.h"
+#include "experiments/compare/run_archive.h"
 #include "loop/run_figures.h"
 #include "palpate/core/error.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "implicit_step.h"
-#include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/linearised_contact.h"
 
 namespace palpate::loop {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "palpate/contact/contact_force.h"
-#include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/linearised_contact.h"
 #include "palpate/dynamics/matrix.h"
 #include "palpate/dynamics/rigid_body.h"
 #include "palpate/dynamics/state.h"

@@ -46,4 +46,17 @@ TEST(ResultKey, FollowsTheBytesOfMeshFiles) {
   EXPECT_NE(one, loop::result_key(d, ""));
 }
 
+TEST(ResultKey, FollowsTheBytesOfRecordings) {
+  const TemporaryFolder folder;
+  auto d = compare_scenes::tool_only();
+  d.path = (folder / "scene.toml").string();
+  d.device->file = "poses.csv";
+  const auto put = [&](const char* text) { std::ofstream(folder / "poses.csv") << text; };
+  put("1");
+  const std::string one = loop::result_key(d, "");
+  EXPECT_EQ(one, loop::result_key(d, ""));
+  put("2");
+  EXPECT_NE(one, loop::result_key(d, ""));
+}
+
 }  // namespace

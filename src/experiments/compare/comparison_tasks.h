@@ -34,13 +34,13 @@ struct SceneWork {
 };
 
 /// All runs of a comparison, and their results so far.
-class Ledger : public experiments::Experiment {
+class ComparisonTasks : public experiments::Experiment {
  public:
   /// Plans the runs.
   /// @param choices  linear solvers per scene
   /// @param trials  plans trials of linear solvers instead of sequences and charts
-  Ledger(const std::vector<scene::Description>& scenes, const CompareOptions& options,
-         const std::vector<SolverChoice>& choices, bool trials);
+  ComparisonTasks(const std::vector<scene::Description>& scenes, const CompareOptions& options,
+                  const std::vector<SolverChoice>& choices, bool trials);
 
   std::size_t size() const override { return tasks_.size(); }
   experiments::Task task(std::size_t i) override;

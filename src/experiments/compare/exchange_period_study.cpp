@@ -1,4 +1,4 @@
-#include "palpate/experiments/exchange.h"
+#include "palpate/experiments/exchange_period_study.h"
 
 #include <algorithm>
 #include <cmath>

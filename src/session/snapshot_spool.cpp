@@ -1,4 +1,4 @@
-#include "session/instant_spool.h"
+#include "session/snapshot_spool.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -26,29 +26,29 @@ Pose pose_from(ByteReader& in) {
   return out;
 }
 
-std::string bytes_of(const Instant& instant) {
+std::string bytes_of(const WorldSnapshot& snapshot) {
   ByteWriter out;
-  out.put(instant.time).put(instant.nodes.size());
-  for (const Points& nodes : instant.nodes) out.put(VecX(nodes.reshaped()));
-  out.put(instant.stress.size());
-  for (const VecX& stress : instant.stress) out.put(stress);
-  out.put(instant.depths.size());
-  for (const auto& depths : instant.depths) {
+  out.put(snapshot.time).put(snapshot.nodes.size());
+  for (const Points& nodes : snapshot.nodes) out.put(VecX(nodes.reshaped()));
+  out.put(snapshot.stress.size());
+  for (const VecX& stress : snapshot.stress) out.put(stress);
+  out.put(snapshot.depths.size());
+  for (const auto& depths : snapshot.depths) {
     out.put(depths.size());
     for (const auto& [vertex, depth] : depths) out.put(vertex).put(depth);
   }
-  out.put(instant.bones.size());
-  for (const Pose& bone : instant.bones) put(out, bone);
-  out.put(instant.tools.size());
-  for (const Pose& tool : instant.tools) put(out, tool);
-  out.put(instant.handle.has_value());
-  if (instant.handle) put(out, *instant.handle);
+  out.put(snapshot.bones.size());
+  for (const Pose& bone : snapshot.bones) put(out, bone);
+  out.put(snapshot.tools.size());
+  for (const Pose& tool : snapshot.tools) put(out, tool);
+  out.put(snapshot.handle.has_value());
+  if (snapshot.handle) put(out, *snapshot.handle);
   return out.take();
 }
 
-Instant instant_from(const std::string& bytes) {
+WorldSnapshot snapshot_from(const std::string& bytes) {
   ByteReader in(bytes);
-  Instant out;
+  WorldSnapshot out;
   out.time = in.get<double>();
   out.nodes.resize(in.get<std::size_t>());
   for (Points& nodes : out.nodes) {
@@ -72,7 +72,7 @@ Instant instant_from(const std::string& bytes) {
 
 }  // namespace
 
-InstantSpool::InstantSpool(const std::string& folder) : folder_(folder) {
+SnapshotSpool::SnapshotSpool(const std::string& folder) : folder_(folder) {
   std::string name = (std::filesystem::path(folder) / ".instants-XXXXXX").string();
   const int descriptor = mkostemp(name.data(), O_CLOEXEC);
   if (descriptor < 0) refuse("written");
@@ -81,16 +81,16 @@ InstantSpool::InstantSpool(const std::string& folder) : folder_(folder) {
   if (!file_) refuse("written");
 }
 
-InstantSpool::~InstantSpool() {
+SnapshotSpool::~SnapshotSpool() {
   if (file_) std::fclose(file_);
 }
 
-void InstantSpool::refuse(const char* what) const {
+void SnapshotSpool::refuse(const char* what) const {
   fail("{}: the positions for pictures cannot be {}: {}", folder_, what, std::strerror(errno));
 }
 
-void InstantSpool::append(const Instant& instant) {
-  const std::string bytes = bytes_of(instant);
+void SnapshotSpool::append(const WorldSnapshot& snapshot) {
+  const std::string bytes = bytes_of(snapshot);
   const std::size_t size = bytes.size();
   if (std::fwrite(&size, sizeof size, 1, file_) != 1 || std::fwrite(bytes.data(), 1, size, file_) != size ||
       std::fflush(file_) != 0)
@@ -98,18 +98,18 @@ void InstantSpool::append(const Instant& instant) {
   ++count_;
 }
 
-void InstantSpool::rewind() {
+void SnapshotSpool::rewind() {
   std::rewind(file_);
   read_ = 0;
 }
 
-bool InstantSpool::next(Instant& out) {
+bool SnapshotSpool::next(WorldSnapshot& out) {
   if (read_ == count_) return false;
   std::size_t size = 0;
   if (std::fread(&size, sizeof size, 1, file_) != 1) refuse("read");
   std::string bytes(size, '\0');
   if (std::fread(bytes.data(), 1, size, file_) != size) refuse("read");
-  out = instant_from(bytes);
+  out = snapshot_from(bytes);
   ++read_;
   return true;
 }

@@ -1,4 +1,4 @@
-#include "store/result_folder.h"
+#include "store/folder_lock.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -59,7 +59,7 @@ std::string command_of(long process) {
 
 }  // namespace
 
-void ResultFolder::make(const std::string& path) {
+void FolderLock::make(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (std::error_code none; !fs::is_directory(path, none))
@@ -70,7 +70,7 @@ void ResultFolder::make(const std::string& path) {
          std::strerror(errno));
 }
 
-ResultFolder::ResultFolder(const std::string& path, Access access) {
+FolderLock::FolderLock(const std::string& path, Access access) {
   make(path);
   lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   const int kind = access == Access::kAlone ? LOCK_EX : LOCK_SH;
@@ -84,7 +84,7 @@ ResultFolder::ResultFolder(const std::string& path, Access access) {
   }
 }
 
-ResultFolder::~ResultFolder() {
+FolderLock::~FolderLock() {
   if (lock_ >= 0) ::close(lock_);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "coupling.h"
-#include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/linearised_contact.h"
 #include "palpate/tool/tick.h"
 
 namespace palpate::tool {

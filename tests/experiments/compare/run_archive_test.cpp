@@ -10,7 +10,7 @@
 #include <type_traits>
 
 #include "core/archive_bytes.h"
-#include "experiments/compare/work.h"
+#include "experiments/compare/task_process.h"
 #include "loop/summary.h"
 #include "palpate/experiments/compare.h"
 #include "store/csv.h"
@@ -44,7 +44,8 @@ std::map<std::string, double> numbers_of(const loop::RunResult& result) {
 
 class Folder {
  public:
-  Folder() : path(std::filesystem::temp_directory_path() / ("palpate-archives-" + std::to_string(getpid()))) {
+  Folder()
+      : path(std::filesystem::temp_directory_path() / ("palpate-run-archive-" + std::to_string(getpid()))) {
     std::filesystem::remove_all(path);
     std::filesystem::create_directories(path);
   }
@@ -55,7 +56,7 @@ class Folder {
 };
 
 // Lists the names of the struct's members a second time: the archive must have every counter of a run.
-TEST(Archives, VisitsEveryMember) {
+TEST(RunArchive, VisitsEveryMember) {
   const compare::PointRun run = distinct();
   const dynamics::StepperCounters& c = run.result.counters;
   const dynamics::SolverCounters& s = c.solver;
@@ -109,7 +110,7 @@ TEST(Archives, VisitsEveryMember) {
   EXPECT_GE(*values.begin(), 1000.0) << "a member that is not visited";
 }
 
-TEST(Archives, NothingIsLostFromTheRunToTheTable) {
+TEST(RunArchive, NothingIsLostFromTheRunToTheTable) {
   const Folder folder;
   compare::PointRun run = distinct();
   run.result.counters.solver.ordering = "METIS";
@@ -147,7 +148,7 @@ TEST(Archives, NothingIsLostFromTheRunToTheTable) {
   }
 }
 
-TEST(Archives, ASummaryHoldsEveryNumberOfARun) {
+TEST(RunArchive, ASummaryHoldsEveryNumberOfARun) {
   const loop::World world;
   const compare::PointRun run = distinct();
   const store::Summary summary = loop::summarise(world, run.result, 0.0);
@@ -162,7 +163,7 @@ TEST(Archives, ASummaryHoldsEveryNumberOfARun) {
   EXPECT_EQ(found, numbers_of(run.result));
 }
 
-TEST(Archives, SumsAndDifferencesHaveEveryCounter) {
+TEST(RunArchive, SumsAndDifferencesHaveEveryCounter) {
   const dynamics::StepperCounters c = distinct().result.counters;
   dynamics::SolverCounters twice = c.solver;
   twice += c.solver;
@@ -173,7 +174,7 @@ TEST(Archives, SumsAndDifferencesHaveEveryCounter) {
   dynamics::visit_counters([](const char* name, const auto& value) { EXPECT_EQ(value, 0) << name; }, none);
 }
 
-TEST(Archives, ATrajectoryComesBackToTheBit) {
+TEST(RunArchive, ATrajectoryComesBackToTheBit) {
   compare::Run run;
   compare::Trajectory& t = run.trajectory;
   t.period_times = {0.1, 0.2};

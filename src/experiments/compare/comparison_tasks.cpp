@@ -1,21 +1,21 @@
-#include "experiments/compare/ledger.h"
+#include "experiments/compare/comparison_tasks.h"
 
 #include <algorithm>
 
-#include "experiments/compare/work.h"
+#include "experiments/compare/task_process.h"
 #include "loop/result_key.h"
 #include "palpate/core/error.h"
 
 namespace palpate::compare {
 
-Ledger::Ledger(const std::vector<scene::Description>& scenes, const CompareOptions& options,
-               const std::vector<SolverChoice>& choices, bool trials)
+ComparisonTasks::ComparisonTasks(const std::vector<scene::Description>& scenes, const CompareOptions& options,
+                                 const std::vector<SolverChoice>& choices, bool trials)
     : options_(options), trials_(trials) {
   for (std::size_t s = 0; s < scenes.size(); ++s) plan(scenes[s], choices[s]);
   add_tasks();
 }
 
-void Ledger::plan(const scene::Description& d, const SolverChoice& choice) {
+void ComparisonTasks::plan(const scene::Description& d, const SolverChoice& choice) {
   SceneWork own;
   own.description = with_overrides(d, {});  // Only the text counts.
   SceneComparison comparison;
@@ -43,7 +43,7 @@ void Ledger::plan(const scene::Description& d, const SolverChoice& choice) {
 
 // Order: references; the first levels of all sequences over all scenes, then their second levels; further
 // charts; repeats.
-void Ledger::add_tasks() {
+void ComparisonTasks::add_tasks() {
   std::size_t most = 0;
   for (std::size_t s = 0; s < work_.size(); ++s) {
     add_task({Task::Kind::kPrimary, s});
@@ -64,21 +64,21 @@ void Ledger::add_tasks() {
   }
 }
 
-void Ledger::add_task(Task task) {
+void ComparisonTasks::add_task(Task task) {
   task.group = tasks_.size();
   if (task.kind == Task::Kind::kPoint)
     task.group = groups_.emplace(std::pair{task.scene, point_of(task).label}, task.group).first->second;
   tasks_.push_back(task);
 }
 
-std::size_t Ledger::level(std::size_t s, std::size_t p) const {
+std::size_t ComparisonTasks::level(std::size_t s, std::size_t p) const {
   const auto& points = out_.scenes[s].points;
   std::size_t n = 0;
   while (p > 0 && points[p - 1].label == points[p].label) --p, ++n;
   return n;
 }
 
-const ComparePoint* Ledger::coarser(const Task& task, std::size_t by) const {
+const ComparePoint* ComparisonTasks::coarser(const Task& task, std::size_t by) const {
   const auto& points = out_.scenes[task.scene].points;
   return task.point >= by && points[task.point - by].label == points[task.point].label
              ? &points[task.point - by]
@@ -87,7 +87,7 @@ const ComparePoint* Ledger::coarser(const Task& task, std::size_t by) const {
 
 // Whether the two preceding levels both have errors that the reference does not resolve: nothing finer can be
 // judged.
-bool Ledger::is_at_the_end(const Task& task) const {
+bool ComparisonTasks::is_at_the_end(const Task& task) const {
   const SceneComparison& scene = out_.scenes[task.scene];
   const TrajectoryError& own = scene.reference.own_error;
   for (const std::size_t by : {std::size_t{1}, std::size_t{2}}) {
@@ -100,7 +100,7 @@ bool Ledger::is_at_the_end(const Task& task) const {
   return true;
 }
 
-Ledger::ReferenceUsed Ledger::reference_used(const Task& task) const {
+ComparisonTasks::ReferenceUsed ComparisonTasks::reference_used(const Task& task) const {
   const SceneWork& own = work_[task.scene];
   if (task.kind != Task::Kind::kPoint || (!own.primary.run && !own.check.run)) return ReferenceUsed::kNone;
   if (!own.primary.run) return ReferenceUsed::kCheck;
@@ -114,7 +114,7 @@ Ledger::ReferenceUsed Ledger::reference_used(const Task& task) const {
                                                                           : ReferenceUsed::kPrimary;
 }
 
-const Trajectory* Ledger::reference_of(const Task& task) const {
+const Trajectory* ComparisonTasks::reference_of(const Task& task) const {
   const SceneWork& own = work_[task.scene];
   switch (reference_used(task)) {
     case ReferenceUsed::kPrimary: return &own.primary.run->trajectory;
@@ -124,12 +124,12 @@ const Trajectory* Ledger::reference_of(const Task& task) const {
   return nullptr;
 }
 
-ComparePoint& Ledger::point_of(const Task& task) {
+ComparePoint& ComparisonTasks::point_of(const Task& task) {
   SceneComparison& scene = out_.scenes[task.scene];
   return task.kind == Task::Kind::kRestart ? scene.restarts[task.point] : scene.points[task.point];
 }
 
-std::string Ledger::key_of(const Task& task) const {
+std::string ComparisonTasks::key_of(const Task& task) const {
   const SceneWork& own = work_[task.scene];
   switch (task.kind) {
     case Task::Kind::kPrimary: return own.primary_key;
@@ -145,7 +145,7 @@ std::string Ledger::key_of(const Task& task) const {
 
 // ---- tasks of the engine ----
 
-experiments::Task Ledger::task(std::size_t i) {
+experiments::Task ComparisonTasks::task(std::size_t i) {
   static const char* const kKinds[] = {"reference", "check", "point", "restart", "exchange", "methods"};
   const Task& one = tasks_[i];
   const bool alone = options_.jobs <= 0 && !one.is_reference();
@@ -159,7 +159,7 @@ experiments::Task Ledger::task(std::size_t i) {
           std::max(1, threads)};
 }
 
-std::string Ledger::input(std::size_t i) {
+std::string ComparisonTasks::input(std::size_t i) {
   const Task& one = tasks_[i];
   const SceneWork& scene = work_[one.scene];
   const double limit_s = limit_of(one);
@@ -175,7 +175,7 @@ std::string Ledger::input(std::size_t i) {
   return encode_job(WorkKind::kPoint, point_of(one).description, limit_s, reference_of(one));
 }
 
-std::string Ledger::progress_text(std::size_t i) {
+std::string ComparisonTasks::progress_text(std::size_t i) {
   const Task& one = tasks_[i];
   const std::string& scene = out_.scenes[one.scene].scene;
   if (!one.is_point()) return (one.is_reference() ? "reference of " : "charts of ") + scene;
@@ -183,7 +183,7 @@ std::string Ledger::progress_text(std::size_t i) {
   return fmt::format("{}: {} {} = {:g}", scene, point.label, point.setting_name, point.setting);
 }
 
-std::string Ledger::key() {
+std::string ComparisonTasks::key() {
   std::string keys = trials_ ? "trials" : "";
   for (const SceneWork& own : work_)
     for (const std::vector<std::string>& list :
@@ -195,7 +195,7 @@ std::string Ledger::key() {
 
 // ---- conditions for running a task ----
 
-bool Ledger::is_ready(std::size_t i) {
+bool ComparisonTasks::is_ready(std::size_t i) {
   const Task& task = tasks_[i];
   if (task.kind != Task::Kind::kPoint) return true;
   if (!work_[task.scene].reference_settled) return false;
@@ -204,7 +204,7 @@ bool Ledger::is_ready(std::size_t i) {
   return !before || before->status != Status::kMissing;
 }
 
-bool Ledger::is_pointless(const Task& task) {
+bool ComparisonTasks::is_pointless(const Task& task) {
   if (task.kind != Task::Kind::kPoint) return false;
   ComparePoint& point = point_of(task);
   if (task.repeat > 0) {

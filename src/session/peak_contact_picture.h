@@ -2,7 +2,7 @@
 #include <string>
 
 #include "loop/contact_instant.h"
-#include "session/instant.h"
+#include "session/world_snapshot.h"
 
 namespace palpate::session {
 
@@ -10,7 +10,7 @@ class MissingOutputs;
 
 /// Observer that keeps the contact query with the largest contact force of a run, for two pictures like
 /// Figures 4 and 5 of Galoppo et al. (2007).
-class ContactSnapshot : public loop::Observer {
+class PeakContactPicture : public loop::Observer {
  public:
   void queried(loop::World& world, double t) override;
 
@@ -22,7 +22,7 @@ class ContactSnapshot : public loop::Observer {
 
  private:
   bool touched() const { return contact_.force_n > 0.0; }
-  Instant instant_;
+  WorldSnapshot snapshot_;
   loop::ContactInstant contact_;
 };
 

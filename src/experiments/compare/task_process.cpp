@@ -1,4 +1,4 @@
-#include "experiments/compare/work.h"
+#include "experiments/compare/task_process.h"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 #include "render/panels.h"
 #include "session/callbacks.h"
 #include "session/frame_sink.h"
-#include "session/instant_spool.h"
+#include "session/snapshot_spool.h"
 
 namespace palpate::session {
 
@@ -38,18 +38,18 @@ FrameSize frame_size(const std::string& text);
 /// Observer that makes pictures of a whole run. It keeps one snapshot per frame on disk during the run and
 /// draws them afterwards, so that camera and colour scale are the same in all frames and fit each of them.
 /// Memory holds one frame and the curve.
-class Frames : public loop::Observer {
+class MovieFrames : public loop::Observer {
  public:
   /// @param folder      folder for the file of snapshots
   /// @param between_s   simulated time between frames [s]
   /// @param duration_s  duration of the run [s]: frames lie in [0, duration)
-  Frames(const loop::World& world, const std::string& folder, Shade shade, double between_s,
-         double duration_s, FrameSize size = {});
+  MovieFrames(const loop::World& world, const std::string& folder, Shade shade, double between_s,
+              double duration_s, FrameSize size = {});
   void period(loop::World& world, double t) override;
   void queried(loop::World& world, double t) override;
   void tick(const loop::TickRecord& tick) override;
   /// Adds a recorded snapshot of a finished run; the ticks up to its time must have been added by tick().
-  void show(Instant instant);
+  void show(WorldSnapshot snapshot);
 
   double between_s() const { return between_s_; }
 
@@ -64,7 +64,7 @@ class Frames : public loop::Observer {
  private:
   int frame_at(double t) const;
   void reach(double t);
-  void keep(Instant instant);
+  void keep(WorldSnapshot snapshot);
 
   Shade shade_;
   double between_s_, end_s_;
@@ -72,7 +72,7 @@ class Frames : public loop::Observer {
   int next_ = 0;                    ///< Next frame
   double reached_ = 0.0;            ///< Simulated time reached by the run [s]
   bool due_ = false;                ///< Whether a frame is due at the next snapshot
-  InstantSpool instants_;
+  SnapshotSpool snapshots_;
   render::Curve curve_;
   std::optional<Pose> first_handle_, handle_;
 };

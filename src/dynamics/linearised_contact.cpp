@@ -1,4 +1,4 @@
-#include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/linearised_contact.h"
 
 namespace palpate::dynamics {
 

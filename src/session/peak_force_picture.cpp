@@ -1,4 +1,4 @@
-#include "session/snapshot.h"
+#include "session/peak_force_picture.h"
 
 #include <algorithm>
 
@@ -8,32 +8,32 @@
 
 namespace palpate::session {
 
-void Snapshot::tick(const loop::TickRecord& tick) {
+void PeakForcePicture::tick(const loop::TickRecord& tick) {
   const double force_n = tick.device.force.norm();
   if (force_n > newest_force_n_) newest_force_n_ = force_n, newest_force_s_ = tick.time;
 }
 
-void Snapshot::period(loop::World& world, double t) {
+void PeakForcePicture::period(loop::World& world, double t) {
   if (shade_ != Shade::kPenetration) consider(world, t);
 }
 
-void Snapshot::queried(loop::World& world, double t) {
+void PeakForcePicture::queried(loop::World& world, double t) {
   if (shade_ == Shade::kPenetration) consider(world, t);
 }
 
-void Snapshot::consider(loop::World& world, double t) {
+void PeakForcePicture::consider(loop::World& world, double t) {
   const double felt = newest_force_n_;
   newest_force_n_ = 0.0;
   if (world.description.tool && felt <= force_n_) return;
   force_n_ = felt;
   force_s_ = newest_force_s_;
-  instant_ = instant_of(world, t, shade_);
+  snapshot_ = snapshot_of(world, t, shade_);
 }
 
-void Snapshot::save(const loop::World& world, const std::string& path) const {
-  render::Scene scene = scene_of(world, instant_, shade_);
+void PeakForcePicture::save(const loop::World& world, const std::string& path) const {
+  render::Scene scene = scene_of(world, snapshot_, shade_);
   add_obstacles(scene, world, view_of(scene));
-  scene.title = fmt::format("{}, t = {} s", world.description.name, time_text(instant_.time));
+  scene.title = fmt::format("{}, t = {} s", world.description.name, time_text(snapshot_.time));
   if (world.description.tool)
     scene.subtitle =
         fmt::format("largest force on the hand {:.3g} N, at {} s", force_n_, time_text(force_s_));

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "core/archive_bytes.h"
-#include "experiments/compare/ledger.h"
+#include "experiments/compare/comparison_tasks.h"
 #include "experiments/compare/methods.h"
 #include "experiments/median.h"
 #include "palpate/core/error.h"
@@ -25,7 +25,7 @@ void summarise(ComparePoint& point, const TrajectoryError& own) {
 
 }  // namespace
 
-void Ledger::take(std::size_t i, const experiments::Result& result) {
+void ComparisonTasks::take(std::size_t i, const experiments::Result& result) {
   const Task& task = tasks_[i];
   if (task.is_reference())
     take_reference(task, result);
@@ -35,7 +35,7 @@ void Ledger::take(std::size_t i, const experiments::Result& result) {
     take_chart(task, result);
 }
 
-void Ledger::take_reference(const Task& task, const experiments::Result& result) {
+void ComparisonTasks::take_reference(const Task& task, const experiments::Result& result) {
   SceneWork& own = work_[task.scene];
   ReferenceRun& run = task.kind == Task::Kind::kPrimary ? own.primary : own.check;
   if (result.status == Status::kOk)
@@ -47,7 +47,7 @@ void Ledger::take_reference(const Task& task, const experiments::Result& result)
   out_.scenes[task.scene].reference = settle(own.planned, own.primary, own.check);
 }
 
-void Ledger::take_point(const Task& task, const experiments::Result& result) {
+void ComparisonTasks::take_point(const Task& task, const experiments::Result& result) {
   ComparePoint& point = point_of(task);
   PointRun run;
   if (!result.bytes.empty()) run = restored<PointRun>(result.bytes);
@@ -66,7 +66,7 @@ void Ledger::take_point(const Task& task, const experiments::Result& result) {
     point.against = used == ReferenceUsed::kPrimary ? planned.made_with : planned.checked_with;
 }
 
-void Ledger::take_chart(const Task& task, const experiments::Result& result) {
+void ComparisonTasks::take_chart(const Task& task, const experiments::Result& result) {
   SceneComparison& comparison = out_.scenes[task.scene];
   const bool exchange = task.kind == Task::Kind::kExchange;
   const auto note = [&](const std::string& of, const std::string& why) {
@@ -89,7 +89,7 @@ void Ledger::take_chart(const Task& task, const experiments::Result& result) {
   }
 }
 
-bool Ledger::is_final(std::size_t i, const experiments::Result& result) {
+bool ComparisonTasks::is_final(std::size_t i, const experiments::Result& result) {
   const Task& task = tasks_[i];
   if (task.is_reference() || task.is_point()) return true;
   if (result.status != Status::kOk) return false;
@@ -102,7 +102,7 @@ bool Ledger::is_final(std::size_t i, const experiments::Result& result) {
   return std::all_of(methods.points.begin(), methods.points.end(), good);
 }
 
-Comparison Ledger::finish() {
+Comparison ComparisonTasks::finish() {
   for (SceneComparison& scene : out_.scenes) {
     for (auto* points : {&scene.points, &scene.restarts})
       for (ComparePoint& point : *points) summarise(point, scene.reference.own_error);
@@ -119,7 +119,7 @@ Comparison Ledger::finish() {
   return std::move(out_);
 }
 
-std::string Ledger::rules() const {
+std::string ComparisonTasks::rules() const {
   const int jobs = experiments::jobs_or_cores(options_.jobs);
   static const std::map<LinearSolvers, std::string> kSolvers = {
       {LinearSolvers::kSame, "All implicit methods solved their linear systems by {}."},

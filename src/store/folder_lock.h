@@ -4,24 +4,24 @@
 
 namespace palpate::store {
 
-/// Output folder of a command, locked against other processes: two runs into one folder would mix their
+/// Lock on the output folder of a command, against other processes: two runs into one folder would mix their
 /// files. The lock (flock on the folder itself) ends with the process, however it ends, and leaves no file
 /// behind. File systems without locks are used without one.
-class ResultFolder {
+class FolderLock {
  public:
-  ResultFolder() = default;
+  FolderLock() = default;
   /// kShared: several processes may share the folder, each writing distinct files, and none can lock it
   /// alone.
   enum class Access { kAlone, kShared };
   /// Creates the folder where it is missing, and locks it.
   /// @throws Error where it cannot be created or written, or where another process holds it; the message
   ///   identifies that process
-  explicit ResultFolder(const std::string& path, Access access = Access::kAlone);
+  explicit FolderLock(const std::string& path, Access access = Access::kAlone);
   /// Creates the folder, without a lock.  @throws Error where it cannot be created or written
   static void make(const std::string& path);
-  ~ResultFolder();
-  ResultFolder(ResultFolder&& other) noexcept : lock_(std::exchange(other.lock_, -1)) {}
-  ResultFolder& operator=(ResultFolder&& other) noexcept {
+  ~FolderLock();
+  FolderLock(FolderLock&& other) noexcept : lock_(std::exchange(other.lock_, -1)) {}
+  FolderLock& operator=(FolderLock&& other) noexcept {
     std::swap(lock_, other.lock_);
     return *this;
   }

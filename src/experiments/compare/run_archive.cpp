@@ -1,4 +1,4 @@
-#include "experiments/compare/archives.h"
+#include "experiments/compare/run_archive.h"
 
 #include <optional>
 

@@ -1,4 +1,4 @@
-#include "session/frames.h"
+#include "session/movie_frames.h"
 
 #include <algorithm>
 #include <array>
@@ -54,17 +54,17 @@ struct Common {
   render::View from;
 };
 
-Common common_of(const loop::World& world, InstantSpool& instants, Shade shade) {
+Common common_of(const loop::World& world, SnapshotSpool& snapshots, Shade shade) {
   Common out;
   double least = INFINITY, greatest = -INFINITY;
   Extremes extremes;
   render::ViewChoice choice;
   constexpr int kLooked = 8;  // snapshots examined, evenly spaced
-  const int between = std::max(1, instants.count() / kLooked);
-  instants.rewind();
+  const int between = std::max(1, snapshots.count() / kLooked);
+  snapshots.rewind();
   int number = 0;
-  for (Instant instant; instants.next(instant); ++number) {
-    const render::Scene scene = scene_of(world, instant, shade);
+  for (WorldSnapshot snapshot; snapshots.next(snapshot); ++number) {
+    const render::Scene scene = scene_of(world, snapshot, shade);
     if (number % between == between / 2) choice.add(scene);
     out.scale = scene.scale;
     for (const render::Surface& surface : scene.surfaces) {
@@ -162,14 +162,14 @@ FrameSize frame_size(const std::string& text) {
   return out;
 }
 
-Frames::Frames(const loop::World& world, const std::string& folder, Shade shade, double between_s,
-               double duration_s, FrameSize size)
+MovieFrames::MovieFrames(const loop::World& world, const std::string& folder, Shade shade, double between_s,
+                         double duration_s, FrameSize size)
     : shade_(shade),
       between_s_(between_s),
       end_s_(duration_s),
       width_(size.width > 0 ? size.width : kWidth),
       height_(size.height > 0 ? size.height : kHeight),
-      instants_(folder) {
+      snapshots_(folder) {
   if (world.description.tool)
     curve_ = {"force on the hand", "N", {}, {}};
   else if (world.contact)
@@ -180,7 +180,7 @@ Frames::Frames(const loop::World& world, const std::string& folder, Shade shade,
   if (size.height > 0) height_ -= strip_;
 }
 
-void Frames::tick(const loop::TickRecord& tick) {
+void MovieFrames::tick(const loop::TickRecord& tick) {
   curve_.times.push_back(tick.time);
   curve_.values.push_back(tick.device.force.norm());
   if (!tick.handle_valid) return;
@@ -188,28 +188,28 @@ void Frames::tick(const loop::TickRecord& tick) {
   if (!first_handle_) first_handle_ = tick.handle;
 }
 
-int Frames::count() const {
+int MovieFrames::count() const {
   return std::max(next_, static_cast<int>(std::ceil(std::min(reached_, end_s_) / between_s_ - 1e-6)));
 }
 
-int Frames::frame_at(double t) const { return static_cast<int>(std::floor(t / between_s_ + 1e-6)); }
+int MovieFrames::frame_at(double t) const { return static_cast<int>(std::floor(t / between_s_ + 1e-6)); }
 
-void Frames::reach(double t) {
+void MovieFrames::reach(double t) {
   reached_ = t;
   due_ = frame_at(t) >= next_ && t < end_s_ * (1.0 - 1e-9);
 }
 
-void Frames::period(loop::World& world, double t) {
+void MovieFrames::period(loop::World& world, double t) {
   reach(t);
-  if (due_ && shade_ != Shade::kPenetration) keep(instant_of(world, t, shade_));
+  if (due_ && shade_ != Shade::kPenetration) keep(snapshot_of(world, t, shade_));
 }
 
-void Frames::show(Instant instant) {
-  reach(instant.time);
-  if (due_) keep(std::move(instant));
+void MovieFrames::show(WorldSnapshot snapshot) {
+  reach(snapshot.time);
+  if (due_) keep(std::move(snapshot));
 }
 
-void Frames::queried(loop::World& world, double t) {
+void MovieFrames::queried(loop::World& world, double t) {
   if (!world.description.tool) {
     double force = 0.0;
     for (const contact::ContactPoint& p : world.contact->points(world.state.view()))
@@ -217,22 +217,22 @@ void Frames::queried(loop::World& world, double t) {
     curve_.times.push_back(t);
     curve_.values.push_back(force);
   }
-  if (due_ && shade_ == Shade::kPenetration) keep(instant_of(world, t, shade_));
+  if (due_ && shade_ == Shade::kPenetration) keep(snapshot_of(world, t, shade_));
 }
 
-void Frames::keep(Instant instant) {
-  instant.handle = handle_;
-  instants_.append(instant);
-  next_ = frame_at(instant.time) + 1;
+void MovieFrames::keep(WorldSnapshot snapshot) {
+  snapshot.handle = handle_;
+  snapshots_.append(snapshot);
+  next_ = frame_at(snapshot.time) + 1;
   due_ = false;
 }
 
-void Frames::save(const loop::World& world, const std::vector<FrameSink*>& sinks, const Callbacks& callbacks,
-                  MissingOutputs& missing) {
+void MovieFrames::save(const loop::World& world, const std::vector<FrameSink*>& sinks,
+                       const Callbacks& callbacks, MissingOutputs& missing) {
   Writer writer(sinks, missing);
   try {
-    if (instants_.count() == 0) fail("the run ended before the first frame");
-    const Common common = common_of(world, instants_, shade_);
+    if (snapshots_.count() == 0) fail("the run ended before the first frame");
+    const Common common = common_of(world, snapshots_, shade_);
     render::Options options;
     options.width = width_;
     options.height = height_;
@@ -245,16 +245,16 @@ void Frames::save(const loop::World& world, const std::vector<FrameSink*>& sinks
                                       : render::with_curve(picture, curve_, frame * between_s_, strip_));
       callbacks.report(static_cast<double>(++frame) / count());
     };
-    instants_.rewind();
-    for (Instant instant; !writer.idle() && instants_.next(instant);) {
-      while (!picture.rgba.empty() && frame < frame_at(instant.time)) show();
+    snapshots_.rewind();
+    for (WorldSnapshot snapshot; !writer.idle() && snapshots_.next(snapshot);) {
+      while (!picture.rgba.empty() && frame < frame_at(snapshot.time)) show();
       if (callbacks.stopped()) break;
-      if (!instant.handle) instant.handle = first_handle_;  // no tick yet
-      render::Scene scene = scene_of(world, instant, shade_);
+      if (!snapshot.handle) snapshot.handle = first_handle_;  // no tick yet
+      render::Scene scene = scene_of(world, snapshot, shade_);
       add_obstacles(scene, world, common.view);
       scene.scale = common.scale;
       scene.title = world.description.name;
-      scene.subtitle = fmt::format("t = {:.4f} s", instant.time);
+      scene.subtitle = fmt::format("t = {:.4f} s", snapshot.time);
       picture = render::draw(scene, options);
       show();
     }

@@ -1,4 +1,4 @@
-#include "session/instant.h"
+#include "session/world_snapshot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,18 +15,18 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-VecX values_of(const loop::Body& body, std::size_t index, const Instant& instant, Shade shade,
+VecX values_of(const loop::Body& body, std::size_t index, const WorldSnapshot& snapshot, Shade shade,
                Eigen::Index surface_points) {
   switch (shade) {
-    case Shade::kStress: return body.surface_values(instant.stress[index]);
+    case Shade::kStress: return body.surface_values(snapshot.stress[index]);
     case Shade::kPenetration: {
       VecX out = VecX::Constant(surface_points, kNone);
-      for (const auto& [vertex, depth] : instant.depths[index]) out[vertex] = depth;
+      for (const auto& [vertex, depth] : snapshot.depths[index]) out[vertex] = depth;
       return out;
     }
     case Shade::kDisplacement: break;
   }
-  const VecX moved = (instant.nodes[index] - body.placed).colwise().norm().transpose();
+  const VecX moved = (snapshot.nodes[index] - body.placed).colwise().norm().transpose();
   return body.surface_values(moved);
 }
 
@@ -47,14 +47,14 @@ render::ColourScale scale_of(const loop::World& world, const render::Scene& scen
   return scale;
 }
 
-void add_bones(render::Scene& scene, const loop::World& world, const Instant& instant) {
-  if (!instant.bones.empty())
+void add_bones(render::Scene& scene, const loop::World& world, const WorldSnapshot& snapshot) {
+  if (!snapshot.bones.empty())
     for (render::Surface& tissue : scene.surfaces) tissue.opacity = 0.55;
-  for (std::size_t i = 0; i < instant.bones.size(); ++i) {
+  for (std::size_t i = 0; i < snapshot.bones.size(); ++i) {
     const TriMesh& shape = world.bones[i].surface;
     if (shape.vertices.cols() == 0) continue;
-    Points now = instant.bones[i].rotation.toRotationMatrix() * shape.vertices;
-    now.colwise() += instant.bones[i].translation;
+    Points now = snapshot.bones[i].rotation.toRotationMatrix() * shape.vertices;
+    now.colwise() += snapshot.bones[i].translation;
     // A skeleton has one entry in the legend.
     const int body = world.bones[i].body;
     const bool first = i == 0 || world.bones[i - 1].body != body;
@@ -100,8 +100,8 @@ Shade check_picture(const std::string& name, const scene::Description& descripti
   return shade;
 }
 
-Instant instant_of(loop::World& world, double time, Shade shade) {
-  Instant out;
+WorldSnapshot snapshot_of(loop::World& world, double time, Shade shade) {
+  WorldSnapshot out;
   out.time = time;
   for (const loop::Body& body : world.bodies) {
     out.nodes.push_back(world.positions(body));
@@ -119,21 +119,21 @@ Instant instant_of(loop::World& world, double time, Shade shade) {
   return out;
 }
 
-render::Scene scene_of(const loop::World& world, const Instant& instant, Shade shade) {
+render::Scene scene_of(const loop::World& world, const WorldSnapshot& snapshot, Shade shade) {
   render::Scene scene;
-  for (std::size_t i = 0; i < instant.nodes.size(); ++i) {
+  for (std::size_t i = 0; i < snapshot.nodes.size(); ++i) {
     const loop::Body& body = world.bodies[i];
-    render::Surface surface{body.name, body.surface_points(instant.nodes[i]), body.surface_faces()};
-    surface.values = values_of(body, i, instant, shade, surface.points.cols());
+    render::Surface surface{body.name, body.surface_points(snapshot.nodes[i]), body.surface_faces()};
+    surface.values = values_of(body, i, snapshot, shade, surface.points.cols());
     scene.surfaces.push_back(std::move(surface));
   }
-  add_bones(scene, world, instant);
+  add_bones(scene, world, snapshot);
   const std::vector<scene::Hand> hands = scene::hands_of(world.description);
   for (std::size_t hand = 0; hand < hands.size(); ++hand) {
     TriMesh tool = loop::tool_surface(*hands[hand].tool, world.folder);
-    if (hand == 0 && instant.handle) add_handle(scene, *instant.handle, tool);
+    if (hand == 0 && snapshot.handle) add_handle(scene, *snapshot.handle, tool);
     for (Eigen::Index i = 0; i < tool.vertices.cols(); ++i)
-      tool.vertices.col(i) = instant.tools[hand] * Vec3(tool.vertices.col(i));
+      tool.vertices.col(i) = snapshot.tools[hand] * Vec3(tool.vertices.col(i));
     render::Surface surface{hands[hand].name, tool.vertices, tool.faces};
     surface.colour = hand == 0 ? render::Rgb{0.80f, 0.42f, 0.20f} : render::Rgb{0.25f, 0.50f, 0.72f};
     surface.opacity = 0.45;  // the dent lies under the tool

@@ -7,7 +7,7 @@ namespace palpate::loop {
 
 /// One translational axis of the haptic loop: sampled device and arm, virtual coupling, tool, and wall. With
 /// the tool held, the coupling is the virtual wall K, B of the literature.
-struct HapticLoopModel {
+struct OneAxisLoop {
   /// The device at its handle, and an arm that grips it rigidly.
   struct Axis {
     double mass_kg = 0.045;          ///< Order of magnitude of a desktop device.
@@ -44,6 +44,6 @@ struct VirtualWallResult {
 /// is integrated exactly between ticks. With a contact the wall is one-sided, and the arm presses the tool on
 /// it with `force_n`; otherwise there is no force, and the motion starts at a deflection of 10 um.
 /// @throws Error for an unknown tool integrator, or in a build without tools
-VirtualWallResult simulate_virtual_wall(const HapticLoopModel& loop, double duration_s, double force_n = 1.0);
+VirtualWallResult simulate_virtual_wall(const OneAxisLoop& loop, double duration_s, double force_n = 1.0);
 
 }  // namespace palpate::loop

@@ -1,4 +1,4 @@
-#include "session/contact_snapshot.h"
+#include "session/peak_contact_picture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -275,17 +275,17 @@ render::Picture depth_picture(const std::vector<contact::RegionView>& regions, c
 
 }  // namespace
 
-void ContactSnapshot::queried(loop::World& world, double t) {
+void PeakContactPicture::queried(loop::World& world, double t) {
   double force = 0.0;
   for (const contact::ContactPoint& p : world.contact->points(world.state.view()))
     force += p.pressure * p.area;
   if (force <= contact_.force_n) return;
   contact_ = loop::contact_instant(world);
-  instant_ = instant_of(world, t, Shade::kPenetration);
+  snapshot_ = snapshot_of(world, t, Shade::kPenetration);
 }
 
-void ContactSnapshot::save(const loop::World& world, const std::string& folder,
-                           MissingOutputs& missing) const {
+void PeakContactPicture::save(const loop::World& world, const std::string& folder,
+                              MissingOutputs& missing) const {
   const auto keep = [&](const char* name, auto draw) {
     const std::string path = (std::filesystem::path(folder) / name).string();
     std::error_code none;
@@ -295,10 +295,10 @@ void ContactSnapshot::save(const loop::World& world, const std::string& folder,
     } catch (const Error& e) { missing.add("picture " + path, e.what()); }
   };
   const std::string title =
-      fmt::format("{}, contact at t = {} s", world.description.name, time_text(instant_.time));
+      fmt::format("{}, contact at t = {} s", world.description.name, time_text(snapshot_.time));
   keep("contact.png", [&] {
     if (!touched()) fail("no contact occurred in this run");
-    const render::Scene scene = scene_of(world, instant_, Shade::kPenetration);
+    const render::Scene scene = scene_of(world, snapshot_, Shade::kPenetration);
     const Patch patch = largest_patch(scene, contact_);
     if (patch.vertices.cols() == 0)
       fail("no surface vertex of a body lies inside the other side of the contact");

@@ -1,5 +1,5 @@
 // Only one process at a time may use a folder of results.
-#include "store/result_folder.h"
+#include "store/folder_lock.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -11,13 +11,13 @@
 #include "palpate/core/error.h"
 #include "store/sample_run.h"
 
-using palpate::store::ResultFolder;
+using palpate::store::FolderLock;
 
 namespace {
 
 std::string refusal(const std::string& path) {
   try {
-    const ResultFolder mine(path);
+    const FolderLock mine(path);
   } catch (const palpate::Error& e) { return e.what(); }
   return "accepted";
 }
@@ -28,7 +28,7 @@ pid_t holder_of(const std::string& path) {
   if (::pipe(ends) != 0) return -1;
   const pid_t child = ::fork();
   if (child == 0) {
-    const ResultFolder mine(path);
+    const FolderLock mine(path);
     if (::write(ends[1], "x", 1) != 1) ::_exit(1);
     for (;;) ::pause();
   }
@@ -38,16 +38,16 @@ pid_t holder_of(const std::string& path) {
   return child;
 }
 
-TEST(ResultFolder, IsMadeWithItsParentsAndFreeAgainAfterItsOwner) {
+TEST(FolderLock, IsMadeWithItsParentsAndFreeAgainAfterItsOwner) {
   const sample_run::Folder folder;
   const std::string path = folder / "a/b/c";
-  { const ResultFolder mine(path); }
+  { const FolderLock mine(path); }
   EXPECT_TRUE(std::filesystem::is_directory(path));
   EXPECT_TRUE(std::filesystem::is_empty(path)) << "no file is left";
   EXPECT_EQ(refusal(path), "accepted");
 }
 
-TEST(ResultFolder, OfAnotherProcessIsRefusedWithItsNumber) {
+TEST(FolderLock, OfAnotherProcessIsRefusedWithItsNumber) {
   const sample_run::Folder folder;
   const std::string path = folder / "runs";
   const pid_t child = holder_of(path);
@@ -64,18 +64,18 @@ TEST(ResultFolder, OfAnotherProcessIsRefusedWithItsNumber) {
   EXPECT_EQ(refusal(path), "accepted") << "the lock of a killed process goes with it";
 }
 
-TEST(ResultFolder, IsHeldOnceInAProcessToo) {
+TEST(FolderLock, IsHeldOnceInAProcessToo) {
   const sample_run::Folder folder;
-  std::optional<ResultFolder> first(std::in_place, folder / "runs");
+  std::optional<FolderLock> first(std::in_place, folder / "runs");
   EXPECT_NE(refusal(folder / "runs"), "accepted");
-  ResultFolder second = std::move(*first);
+  FolderLock second = std::move(*first);
   first.reset();
   EXPECT_NE(refusal(folder / "runs"), "accepted") << "the lock has moved";
-  second = ResultFolder();
+  second = FolderLock();
   EXPECT_EQ(refusal(folder / "runs"), "accepted");
 }
 
-TEST(ResultFolder, AFileOfThatNameIsRefused) {
+TEST(FolderLock, AFileOfThatNameIsRefused) {
   const palpate::TemporaryFolder folder;
   const std::string path = folder.write("file", "mine").string();
   EXPECT_EQ(refusal(path),

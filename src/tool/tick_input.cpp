@@ -1,4 +1,4 @@
-#include "handle_path.h"
+#include "tick_input.h"
 
 #include <algorithm>
 #include <cmath>

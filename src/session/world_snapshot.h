@@ -19,7 +19,7 @@ enum class Shade { kDisplacement, kStress, kPenetration };
 Shade check_picture(const std::string& name, const scene::Description& description);
 
 /// Snapshot of a World for pictures. It is compact: it holds positions of the nodes, not of the skins.
-struct Instant {
+struct WorldSnapshot {
   double time = 0.0;          ///< Simulated time [s]
   std::vector<Points> nodes;  ///< Node positions of each body [m]
   std::vector<VecX> stress;   ///< Nodal von Mises stress of each body [Pa]; empty for other shades
@@ -33,11 +33,11 @@ struct Instant {
 
 /// Returns a snapshot of the world.
 /// @pre for penetration: called directly after a query, with views kept (loop/contact_instant.h)
-Instant instant_of(loop::World& world, double time, Shade shade);
+WorldSnapshot snapshot_of(loop::World& world, double time, Shade shade);
 
 /// Returns the surfaces coloured by `shade`, tool and handle, and bones visible through the tissue; without
 /// obstacles.
-render::Scene scene_of(const loop::World& world, const Instant& instant, Shade shade);
+render::Scene scene_of(const loop::World& world, const WorldSnapshot& snapshot, Shade shade);
 
 /// Returns the bounding view of all surfaces: the part of an unbounded obstacle that is drawn.
 contact::View view_of(const render::Scene& scene);

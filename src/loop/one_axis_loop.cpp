@@ -1,9 +1,10 @@
+#include "loop/one_axis_loop.h"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "haptic_loop.h"
-#include "loop/haptic_loop_model.h"
 #include "palpate/core/error.h"
 
 // Performs the same operations per tick as a run, with one axis of a device. The device starts at half of its
@@ -24,7 +25,7 @@ constexpr double kPerturbed = 1e-5;  ///< Initial deflection without a wall [m].
 /// Device with one axis, x of the scene, exact between ticks; its velocity is the backward difference.
 class AxisHandle : public device::Device {
  public:
-  AxisHandle(const HapticLoopModel& loop, double force)
+  AxisHandle(const OneAxisLoop& loop, double force)
       : axis_(loop.device.arm()),
         tick_(loop.tick_s),
         force_(force),
@@ -56,7 +57,7 @@ class AxisHandle : public device::Device {
   std::vector<double> held_;  ///< Forces of the motors; the first acts until the next sample.
 };
 
-ToolSpec spec_of(const HapticLoopModel& loop) {
+ToolSpec spec_of(const OneAxisLoop& loop) {
   ToolSpec spec;
   spec.mass_kg = loop.tool_held ? kHeld : loop.tool_mass_kg;
   spec.coupling.stiffness_n_m = loop.coupling_stiffness_n_m;
@@ -67,7 +68,7 @@ ToolSpec spec_of(const HapticLoopModel& loop) {
 }
 
 /// Returns the contact record of the wall, which occupies x > 0.
-dynamics::LinearisedContact wall_at(const HapticLoopModel& loop, double tool_x) {
+dynamics::LinearisedContact wall_at(const OneAxisLoop& loop, double tool_x) {
   dynamics::LinearisedContact record;
   record.version = 1;
   if (loop.tool_held || loop.contact_stiffness_n_m <= 0.0 || tool_x <= 0.0) return record;
@@ -80,7 +81,7 @@ dynamics::LinearisedContact wall_at(const HapticLoopModel& loop, double tool_x) 
 
 }  // namespace
 
-VirtualWallResult simulate_virtual_wall(const HapticLoopModel& loop, double duration_s, double force_n) {
+VirtualWallResult simulate_virtual_wall(const OneAxisLoop& loop, double duration_s, double force_n) {
   const ToolSpec spec = spec_of(loop);
   const bool pressed = !loop.tool_held && loop.contact_stiffness_n_m > 0.0;
   const double k = loop.coupling_stiffness_n_m, K = loop.contact_stiffness_n_m;
@@ -97,8 +98,8 @@ VirtualWallResult simulate_virtual_wall(const HapticLoopModel& loop, double dura
                         .device_spec = device,
                         .device = std::move(handle),
                         .limiter = {kUnlimited, kUnlimited, 0.0},
-                        .scheme = TickTool{.tool = {spec, Vec3::Zero()}, .path = {}}};
-  tool::Tool& tool = instance.with_ticks()->tool;
+                        .scheme = PartitionedTool{.tool = {spec, Vec3::Zero()}, .path = {}}};
+  tool::Tool& tool = instance.partitioned()->tool;
   if (pressed) tool.set_state(0.0, {Quat::Identity(), Vec3(0.5 * carried / K, 0, 0)}, {});
 
   HapticLoop ticks(instance);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "loop/penetration.h"
 #include "loop/penetration_warning.h"
 #include "loop/small_scenes.h"
 #include "loop/summary.h"
@@ -15,38 +16,38 @@ namespace {
 using namespace palpate;
 
 /// @param depth  depth of the tool at the first query, before anything has yielded
-loop::Overlap overlap_of(double depth, const std::string& method = "distance") {
+loop::PenetrationReport penetration_of(double depth, const std::string& method = "distance") {
   scene::Description d = small_scenes::pressed_block(depth);
   d.contacts[0].method = method;
   const auto world = loop::assemble(d);
   EXPECT_TRUE(loop::run(*world, {}).status.ok());
-  const std::vector<loop::Overlap> all = loop::overlaps_of(*world);
+  const std::vector<loop::PenetrationReport> all = loop::penetration_reports(*world);
   EXPECT_EQ(all.size(), 1u);
   return all.at(0);
 }
 
 // The block yields from then on, and the overlap decreases.
-TEST(Overlap, IsThatOfTheDeepestQuery) {
-  const loop::Overlap of_points = overlap_of(0.003);
+TEST(Penetration, IsThatOfTheDeepestQuery) {
+  const loop::PenetrationReport of_points = penetration_of(0.003);
   EXPECT_EQ(of_points.pair, "block - tool");
   EXPECT_NEAR(of_points.deepest_m, 0.003, 0.02 * 0.003);
   EXPECT_NEAR(of_points.half_width_m, 0.01, 1e-12);
   EXPECT_FALSE(of_points.too_deep());
   // the vertex nearest to the axis is offset by 1 mm and 2 mm
-  EXPECT_NEAR(overlap_of(0.003, "analytic").deepest_m, 0.015 - std::hypot(0.001, 0.002, 0.012), 1e-9);
+  EXPECT_NEAR(penetration_of(0.003, "analytic").deepest_m, 0.015 - std::hypot(0.001, 0.002, 0.012), 1e-9);
 }
 
-TEST(Overlap, IsNothingWithoutTouch) {
-  EXPECT_EQ(overlap_of(-0.001).deepest_m, 0.0);
-  EXPECT_FALSE(overlap_of(-0.001).too_deep());
+TEST(Penetration, IsNothingWithoutTouch) {
+  EXPECT_EQ(penetration_of(-0.001).deepest_m, 0.0);
+  EXPECT_FALSE(penetration_of(-0.001).too_deep());
 }
 
-TEST(Overlap, IsTooDeepBeyondHalfOfTheThinnerSide) {
-  EXPECT_TRUE(overlap_of(0.0105).too_deep());
-  EXPECT_FALSE(overlap_of(0.0095).too_deep());
+TEST(Penetration, IsTooDeepBeyondHalfOfTheThinnerSide) {
+  EXPECT_TRUE(penetration_of(0.0105).too_deep());
+  EXPECT_FALSE(penetration_of(0.0095).too_deep());
 }
 
-TEST(Overlap, StandsInTheSummary) {
+TEST(Penetration, StandsInTheSummary) {
   const auto world = loop::assemble(small_scenes::pressed_block(0.003));
   const loop::RunResult result = loop::run(*world, {});
   store::Summary summary = loop::summarise(*world, result, 0.0);
@@ -55,7 +56,7 @@ TEST(Overlap, StandsInTheSummary) {
   EXPECT_EQ(std::get<Names>(*summary_rows::find(row, "between")), (Names{"block", "tool"}));
   ASSERT_NE(summary_rows::find(row, "deepest_overlap_m"), nullptr);
   EXPECT_EQ(std::get<double>(*summary_rows::find(row, "deepest_overlap_m")),
-            loop::overlaps_of(*world).at(0).deepest_m);
+            loop::penetration_reports(*world).at(0).deepest_m);
 }
 
 /// Warnings of a run with the tool at that depth.
