@@ -16,7 +16,7 @@ using store::ResultDb;
 using store::ResultFolder;
 using Access = ResultDb::Access;
 
-constexpr const char* kPart = ".part";
+constexpr const char *kPart = ".part", *kDamaged = ".damaged";
 
 fs::path main_path(const std::string& folder) { return fs::path(folder) / "results.db"; }
 fs::path tasks_path(const std::string& folder) { return fs::path(folder) / "tasks"; }
@@ -33,12 +33,20 @@ std::vector<fs::path> element_files(const std::string& folder, bool with_parts) 
   return out;
 }
 
-/// Copies the results of elements.  A file that a failing disk has damaged is left out: its tasks are run
-/// again.
-void copy_elements(const std::vector<fs::path>& files, ResultDb& to) {
-  for (const fs::path& file : files) try {
-      to.put_all(ResultDb(file.string(), Access::kSingle));
-    } catch (const Error& damaged) { log::warn("{}", damaged.what()); }
+/// Copies the results of an element.  Its tasks are run again where the file cannot be read: a failing disk
+/// may have damaged it.
+/// @return whether the file could be read  @throws Error where `to` cannot be written
+bool copy_element(const fs::path& file, ResultDb& to) {
+  std::unique_ptr<ResultDb> from;
+  try {
+    from = std::make_unique<ResultDb>(file.string(), Access::kSingle);
+    from->check_readable();
+  } catch (const Error& damaged) {
+    log::warn("{}", damaged.what());
+    return false;
+  }
+  to.put_all(*from);
+  return true;
 }
 
 void remove_file(const fs::path& path) {
@@ -47,11 +55,30 @@ void remove_file(const fs::path& path) {
   if (failed) fail("{}: cannot be removed: {}", path.string(), failed.message());
 }
 
-/// Copies the results of elements into results.db, and removes their files.
+/// Renames an unreadable file, and the journal that SQLite may have left beside it.
+void set_aside(const fs::path& file) {
+  const std::string kept = file.string() + kDamaged;
+  std::error_code none, failed;
+  fs::rename(file.string() + "-journal", kept + "-journal", none);
+  fs::rename(file, kept, failed);
+  if (failed) fail("{}: cannot be renamed to {}: {}", file.string(), kept, failed.message());
+  log::warn("{}: its results cannot be read, and are kept in {}", file.string(), kept);
+}
+
+/// Copies the results of elements into results.db, and removes the files that were copied.
 void merge_elements(const std::string& folder, bool with_parts, ResultDb& to) {
-  const std::vector<fs::path> files = element_files(folder, with_parts);
-  copy_elements(files, to);
-  for (const fs::path& file : files) remove_file(file);
+  for (const fs::path& file : element_files(folder, with_parts))
+    if (copy_element(file, to))
+      remove_file(file);
+    else
+      set_aside(file);
+}
+
+/// Locks the folder of the elements' files.  @return nothing where another process uses it
+std::optional<ResultFolder> lock_alone(const std::string& folder) {
+  try {
+    return ResultFolder(tasks_path(folder).string());
+  } catch (const Error&) { return std::nullopt; }
 }
 
 /// Returns a file name for a list of tasks.
@@ -95,15 +122,15 @@ ResultStore ResultStore::read(const std::string& folder, bool all_ended) {
   ResultStore out;
   out.extra_ = std::make_unique<ResultDb>(":memory:");
   out.main_.reset();
-  const bool any = !element_files(folder, all_ended).empty();
-  try {
-    if (any) {
-      const ResultFolder lock(tasks_path(folder).string());
+  if (!element_files(folder, all_ended).empty()) {
+    if (const auto lock = lock_alone(folder)) {
       ResultDb all(main_path(folder).string());
       merge_elements(folder, all_ended, all);
       if (std::error_code not_empty; all_ended) fs::remove(tasks_path(folder), not_empty);
+    } else {
+      for (const fs::path& file : element_files(folder, false)) copy_element(file, *out.extra_);
     }
-  } catch (const Error&) { copy_elements(element_files(folder, false), *out.extra_); }  // Others are writing.
+  }
   if (fs::exists(main_path(folder)))
     out.main_ = std::make_unique<ResultDb>(main_path(folder).string(), Access::kRead);
   return out;

@@ -14,6 +14,7 @@ namespace palpate::experiments {
 ///   FOLDER/results.db         written by the one command that works in the folder
 ///   FOLDER/tasks/LIST.db      results of `--task LIST`, as an element of an array job; complete
 ///   FOLDER/tasks/LIST.db.part the same, while it is written
+///   FOLDER/tasks/*.damaged    file of an element that could not be read
 ///
 /// Only one process ever opens a file that is being written, so the folder may lie on a network file system.
 /// Files in `tasks` are copied into results.db, and removed, by the next command without --task.

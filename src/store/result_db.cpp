@@ -184,8 +184,19 @@ long ResultDb::count() const {
 void ResultDb::put_all(const ResultDb& other) {
   Query select(other.impl_->db, other.impl_->path, "select * from result");
   impl_->execute("begin");
-  while (select.step()) put(select.row());
-  impl_->execute("commit");
+  try {
+    while (select.step()) put(select.row());
+    impl_->execute("commit");
+  } catch (...) {
+    // Fails where SQLite has rolled back by itself, as it does for a full disk.
+    sqlite3_exec(impl_->db, "rollback", nullptr, nullptr, nullptr);
+    throw;
+  }
+}
+
+void ResultDb::check_readable() const {
+  Query select(impl_->db, impl_->path, "select * from result");
+  while (select.step()) select.row();
 }
 
 }  // namespace palpate::store

@@ -58,7 +58,10 @@ class ResultDb {
   std::optional<ResultRow> find(const std::string& key) const;
   long count() const;  ///< Number of rows.
   /// Copies all rows of another database, in one transaction.
+  /// @throws Error where one of the two fails; this database then is as before
   void put_all(const ResultDb& other);
+  /// Reads all rows.  @throws Error where the file is damaged
+  void check_readable() const;
 
  private:
   struct Impl;

@@ -1,6 +1,8 @@
 #include "experiments/result_store.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 
@@ -118,6 +120,32 @@ TEST(ResultStore, ADamagedFileLosesItsTasksOnly) {
   const ResultStore store = ResultStore::here(folder.string(), false);
   EXPECT_FALSE(store.find("1"));
   EXPECT_TRUE(store.find("2"));
+  EXPECT_TRUE(fs::exists(path + ".damaged")) << "somebody may repair it";
+  EXPECT_FALSE(fs::exists(folder / "tasks" / "2.db"));
+}
+
+TEST(ResultStore, WhatCannotBeCopiedIsNotRemoved) {
+  const TemporaryFolder folder;
+  ResultStore element = ResultStore::element(folder.string(), "1");
+  element.put(task_of("a"), result_of(std::string(1000000, 'x')));
+  element.close();
+  store::write_atomically((folder / "results.db").string(), "no database" + std::string(5000, 'x'));
+  EXPECT_THROW(ResultStore::here(folder.string(), false), Error);
+  EXPECT_THROW(ResultStore::read(folder.string()), Error);
+  EXPECT_TRUE(fs::exists(folder / "tasks" / "1.db"));
+
+  fs::remove(folder / "results.db");
+  signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{100000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);  // Writes fail, as on a full disk.
+  EXPECT_THROW(ResultStore::here(folder.string(), false), Error);
+  EXPECT_THROW(ResultStore::read(folder.string(), true), Error);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  signal(SIGXFSZ, SIG_DFL);
+  EXPECT_TRUE(fs::exists(folder / "tasks" / "1.db"));
+  EXPECT_TRUE(ResultStore::read(folder.string()).find("a"));
 }
 
 TEST(Status, HasOneNamePerValue) {
