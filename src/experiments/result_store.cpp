@@ -1,9 +1,12 @@
 #include "experiments/result_store.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <vector>
 
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 #include "store/content_hash.h"
@@ -16,21 +19,29 @@ using store::ResultDb;
 using store::ResultFolder;
 using Access = ResultDb::Access;
 
-constexpr const char *kPart = ".part", *kDamaged = ".damaged";
+constexpr const char *kPart = ".part", *kDamaged = ".damaged", *kLock = ".lock";
+constexpr double kLongestWaitSeconds = 60.0;
 
 fs::path main_path(const std::string& folder) { return fs::path(folder) / "results.db"; }
 fs::path tasks_path(const std::string& folder) { return fs::path(folder) / "tasks"; }
 
-/// Returns the files of elements in a fixed order.
-std::vector<fs::path> element_files(const std::string& folder, bool with_parts) {
+/// Returns the entries of `tasks` whose names end so, in a fixed order.
+std::vector<fs::path> files_ending(const std::string& folder, const std::vector<std::string>& ends) {
   std::vector<fs::path> out;
   std::error_code none;
   for (fs::directory_iterator at(tasks_path(folder), none), end; at != end; at.increment(none)) {
     const std::string name = at->path().filename().string();
-    if (name.ends_with(".db") || (with_parts && name.ends_with(kPart))) out.push_back(at->path());
+    if (std::any_of(ends.begin(), ends.end(), [&](const std::string& one) { return name.ends_with(one); }))
+      out.push_back(at->path());
   }
   std::sort(out.begin(), out.end());
   return out;
+}
+
+/// Returns the files of elements.
+std::vector<fs::path> element_files(const std::string& folder, bool with_parts) {
+  return files_ending(folder,
+                      with_parts ? std::vector<std::string>{".db", kPart} : std::vector<std::string>{".db"});
 }
 
 /// Copies the results of an element.  Its tasks are run again where the file cannot be read: a failing disk
@@ -72,6 +83,7 @@ void merge_elements(const std::string& folder, bool with_parts, ResultDb& to) {
       remove_file(file);
     else
       set_aside(file);
+  for (const fs::path& lock : files_ending(folder, {kLock})) remove_file(lock);
 }
 
 /// Locks the folder of the elements' files.  @return nothing where another process uses it
@@ -84,6 +96,29 @@ std::optional<ResultFolder> lock_alone(const std::string& folder) {
 /// Returns a file name for a list of tasks.
 std::string name_of(const std::string& list) {
   return list.size() <= 100 ? list : store::ContentHash().add(list).hex();
+}
+
+/// Locks the folder of the elements' files together with other elements.  Waits, since a command that copies
+/// results holds it for some seconds.
+ResultFolder lock_shared(const fs::path& tasks) {
+  ResultFolder::make(tasks.string());
+  const double start = wall_seconds();
+  while (true) try {
+      return ResultFolder(tasks.string(), ResultFolder::Access::kShared);
+    } catch (const Error&) {
+      if (wall_seconds() - start > kLongestWaitSeconds) throw;
+      usleep(100000);
+    }
+}
+
+/// Locks a list of tasks, by a folder that is removed with the element's file: an element that starts the
+/// same list later must find the same folder.
+ResultFolder lock_list(const fs::path& tasks, const std::string& list) {
+  const std::string path = (tasks / (name_of(list) + kLock)).string();
+  ResultFolder::make(path);
+  try {
+    return ResultFolder(path);
+  } catch (const Error& busy) { fail("these tasks already run, --task {}: {}", list, busy.what()); }
 }
 
 }  // namespace
@@ -107,7 +142,8 @@ ResultStore ResultStore::element(const std::string& folder, const std::string& l
   ResultStore out;
   out.folder_ = folder;
   const fs::path tasks = tasks_path(folder);
-  out.tasks_lock_ = ResultFolder(tasks.string(), ResultFolder::Access::kShared);
+  out.tasks_lock_ = lock_shared(tasks);
+  out.list_lock_ = lock_list(tasks, list);
   out.element_ = (tasks / (name_of(list) + ".db")).string();
   // The element's own earlier results, after a requeue.
   if (fs::exists(out.element_)) fs::rename(out.element_, out.element_ + kPart);
@@ -168,6 +204,7 @@ void ResultStore::close() {
   extra_.reset();
   if (!element_.empty()) fs::rename(element_ + kPart, element_);
   element_.clear();
+  list_lock_ = {};
   tasks_lock_ = {};
 }
 

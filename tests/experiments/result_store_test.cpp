@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <filesystem>
+#include <thread>
 
+#include "messages.h"
 #include "palpate/core/error.h"
 #include "store/atomic_file.h"
 #include "temporary_folder.h"
@@ -106,6 +109,35 @@ TEST(ResultStore, AnElementGoesOnAfterARequeue) {
   EXPECT_EQ(bytes_in(again, "m"), "main");
   again.close();
   EXPECT_EQ(bytes_in(ResultStore::element(folder.string(), "2-3"), "a"), "kept");
+}
+
+TEST(ResultStore, TheSameTasksDoNotRunTwiceAtATime) {
+  const TemporaryFolder folder;
+  ResultStore first = ResultStore::element(folder.string(), "2-3");
+  first.put(task_of("a"), result_of("kept"));
+  const std::string message = expectations::message_of([&] { ResultStore::element(folder.string(), "2-3"); });
+  expectations::expect_contains(message, "these tasks already run, --task 2-3: ");
+  ResultStore other = ResultStore::element(folder.string(), "4");
+  other.close();
+  first.close();
+  { ResultStore again = ResultStore::element(folder.string(), "2-3"); }
+  EXPECT_EQ(bytes_in(ResultStore::here(folder.string(), false), "a"), "kept");
+  EXPECT_FALSE(fs::exists(folder / "tasks")) << "locks are removed with the files";
+}
+
+TEST(ResultStore, AnElementWaitsForACommandThatCopies) {
+  const TemporaryFolder folder;
+  store::ResultFolder lock((folder / "tasks").string());
+  std::thread copies([&] {
+    usleep(300000);
+    fs::remove(folder / "tasks");
+    lock = {};
+  });
+  ResultStore element = ResultStore::element(folder.string(), "1");
+  copies.join();
+  element.put(task_of("a"), result_of("content"));
+  element.close();
+  EXPECT_EQ(bytes_in(ResultStore::read(folder.string()), "a"), "content");
 }
 
 TEST(ResultStore, ADamagedFileLosesItsTasksOnly) {
