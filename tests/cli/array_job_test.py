@@ -118,6 +118,15 @@ class ArrayJobs(Cli):
         self.assertTrue(self.rows("cluster/trials.csv"))
         self.assertTrue(self.rows("cluster/compare.csv"))
 
+    def test_a_lost_trial_leaves_earlier_tables(self):
+        arguments = ["compare", "cantilever", *QUICK_COMPARISON, "--integrator", "linearly-implicit-euler",
+                     "-o", "cluster"]
+        self.by_slurm(*arguments)
+        table = (self.folder / "cluster/compare.csv").read_text()
+        done = self.by_slurm(*arguments, "--linear-solver", "best", status=3, LOSE=f"{len(self.jobs()) + 1}_0")
+        self.assertRegex(done.stderr, r"missing result of task.* ended without them")
+        self.assertEqual((self.folder / "cluster/compare.csv").read_text(), table)
+
     def test_matrix(self):
         arguments = ["stability", "--row", "youngs-modulus", "--integrator", "backward-euler", "--seeds", "1"]
         self.good(*arguments, "-o", "local", "--jobs", "2")
