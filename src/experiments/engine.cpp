@@ -74,7 +74,10 @@ class Engine {
     out_.stopped = stopped();
     out_.complete = open_.empty() && out_.lost.empty();
     for (const Open& open : open_)
-      if (open.submitted) out_.lost.push_back({open.index, ""});
+      if (open.submitted)
+        out_.lost.push_back({open.index, ""});
+      else if (options_.only && !options_.submit && !out_.stopped && is_requested(open.index))
+        out_.lost.push_back({open.index, "needs the result of another task"});
     return std::move(out_);
   }
 
@@ -113,10 +116,11 @@ class Engine {
     return moved;
   }
 
-  bool may_run(const Open& open) const {
-    return pool_ &&
-           (!options_.only || std::binary_search(options_.only->begin(), options_.only->end(), open.index));
+  bool is_requested(std::size_t i) const {
+    return !options_.only || std::binary_search(options_.only->begin(), options_.only->end(), i);
   }
+
+  bool may_run(const Open& open) const { return pool_ && is_requested(open.index); }
 
   bool has_room_for(const Task& task) const {
     return task.alone ? pool_->idle() : pool_->has_room() && !alone_runs_;
@@ -128,7 +132,7 @@ class Engine {
     open.looked_up = true;
     const std::optional<Result> kept = store_.find(task.key);
     if (!kept || (kept->status == Status::kOutOfTime && kept->limit_s < task.limit_s)) return false;
-    ++out_.reused;
+    out_.reused += is_requested(open.index);
     ++ended_;
     experiment_.take(open.index, *kept);
     return true;

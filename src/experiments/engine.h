@@ -54,7 +54,8 @@ struct EngineOptions {
   std::function<void(double fraction, const std::string& what)> progress = {};
 };
 
-/// Task without a result: its process was killed from outside, or ran out of memory.
+/// Task without a result: its process was killed from outside, or ran out of memory, or a result that it
+/// needs is not stored and was not requested.
 struct LostTask {
   std::size_t index = 0;
   std::string why;  ///< Empty where an array job ended without it.
@@ -62,7 +63,8 @@ struct LostTask {
 
 /// What run() did.
 struct EngineOutcome {
-  std::size_t reused = 0, run = 0;  ///< Numbers of results that were stored before, and new ones.
+  /// Numbers of results of the requested tasks that were stored before, and new ones.
+  std::size_t reused = 0, run = 0;
   std::vector<LostTask> lost;
   bool stopped = false;
   bool complete = false;    ///< Every wanted task has its result.
