@@ -55,7 +55,7 @@ class Engine {
     } else {
       all = *options.only;
     }
-    all_ = all.size();
+    all_ = options.only ? options.only->size() : all.size();
     for (const std::size_t i : all) open_.push_back({i});
   }
 
@@ -98,6 +98,7 @@ class Engine {
     for (auto at = open_.begin(); at != open_.end() && !stopped();) {
       const auto current = at++;
       if (!experiment_.is_wanted(current->index)) {
+        ended_ += is_requested(current->index);
         open_.erase(current);
         moved = true;
         continue;
@@ -132,8 +133,10 @@ class Engine {
     open.looked_up = true;
     const std::optional<Result> kept = store_.find(task.key);
     if (!kept || (kept->status == Status::kOutOfTime && kept->limit_s < task.limit_s)) return false;
-    out_.reused += is_requested(open.index);
-    ++ended_;
+    if (is_requested(open.index)) {
+      ++out_.reused;
+      ++ended_;
+    }
     experiment_.take(open.index, *kept);
     return true;
   }

@@ -50,7 +50,7 @@ struct EngineOptions {
   const std::vector<std::size_t>* only = nullptr;
   Submit submit = {};                       ///< Empty: tasks run here.
   const std::atomic<bool>* stop = nullptr;  ///< Set from outside: active tasks are ended.
-  /// Called after each new result.
+  /// Called after each new result, with the share of the requested tasks that are done or not wanted.
   std::function<void(double fraction, const std::string& what)> progress = {};
 };
 

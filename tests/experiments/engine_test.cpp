@@ -196,6 +196,21 @@ TEST(Engine, AnElementRunsItsTasksOnly) {
   EXPECT_TRUE(lost.empty());
 }
 
+TEST(Engine, ProgressCountsTheRequestedTasks) {
+  Inputs inputs({"a", "dropped", "b", "not requested"});
+  inputs.ready = [](std::size_t) { return true; };
+  inputs.wanted = [](std::size_t i) { return i != 1; };
+  const Indices only = {0, 1, 2};
+  EngineOptions options = with_jobs(1);
+  options.only = &only;
+  std::vector<double> fractions;
+  options.progress = [&](double fraction, const std::string&) { fractions.push_back(fraction); };
+  ResultStore store;
+  run(inputs, store, options);
+  ASSERT_EQ(fractions.size(), 2u);
+  EXPECT_NEAR(fractions[1], 1.0, 1e-12);
+}
+
 TEST(Engine, SubmitsGroupsWhenTheyAreReady) {
   ResultStore store;
   std::vector<std::vector<Indices>> jobs;
