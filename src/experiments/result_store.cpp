@@ -158,11 +158,13 @@ ResultStore ResultStore::read(const std::string& folder, bool all_ended) {
   ResultStore out;
   out.extra_ = std::make_unique<ResultDb>(":memory:");
   out.main_.reset();
-  if (!element_files(folder, all_ended).empty()) {
+  if (!element_files(folder, true).empty()) {
     if (const auto lock = lock_alone(folder)) {
       ResultDb all(main_path(folder).string());
-      merge_elements(folder, all_ended, all);
-      if (std::error_code not_empty; all_ended) fs::remove(tasks_path(folder), not_empty);
+      // With the lock, what an element has left incomplete belongs to no process.
+      const bool none_runs = all_ended || lock->is_locked();
+      merge_elements(folder, none_runs, all);
+      if (std::error_code not_empty; none_runs) fs::remove(tasks_path(folder), not_empty);
     } else {
       for (const fs::path& file : element_files(folder, false)) copy_element(file, *out.extra_);
     }

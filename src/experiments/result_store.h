@@ -30,8 +30,8 @@ class ResultStore {
   /// command that copies results, one minute at most.
   /// @throws Error where these tasks already run
   static ResultStore element(const std::string& folder, const std::string& list);
-  /// Opens the folder to read its results.
-  /// @param all_ended  no element writes any more: includes the results of those that were killed
+  /// Opens the folder to read its results; while no element runs, also of those that were killed.
+  /// @param all_ended  no element runs, even where the file system has no locks that tell so
   static ResultStore read(const std::string& folder, bool all_ended = false);
   ResultStore(ResultStore&&) = default;
   ResultStore& operator=(ResultStore&&) = default;
