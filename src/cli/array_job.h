@@ -69,8 +69,8 @@ class TaskFolder {
   Use use_;
   store::ResultFolder lock_;
   experiments::ResultStore store_;
-  std::string lost_;
-  bool left_ = false;  ///< Submitted without waiting.
+  std::string lost_, waited_for_;  ///< Why results are missing; the last job that has ended.
+  bool left_ = false;              ///< Submitted without waiting.
 };
 
 /// Checks the key of the list of tasks that an element was submitted for.

@@ -144,7 +144,7 @@ ResultStore ResultStore::element(const std::string& folder, const std::string& l
   const fs::path tasks = tasks_path(folder);
   out.tasks_lock_ = lock_shared(tasks);
   out.list_lock_ = lock_list(tasks, list);
-  out.element_ = (tasks / (name_of(list) + ".db")).string();
+  out.element_ = element_file(folder, list);
   // The element's own earlier results, after a requeue.
   if (fs::exists(out.element_)) fs::rename(out.element_, out.element_ + kPart);
   out.extra_ = std::make_unique<ResultDb>(out.element_ + kPart, Access::kSingle);
@@ -152,6 +152,10 @@ ResultStore ResultStore::element(const std::string& folder, const std::string& l
   if (fs::exists(main_path(folder)))
     out.main_ = std::make_unique<ResultDb>(main_path(folder).string(), Access::kRead);
   return out;
+}
+
+std::string ResultStore::element_file(const std::string& folder, const std::string& list) {
+  return (tasks_path(folder) / (name_of(list) + ".db")).string();
 }
 
 ResultStore ResultStore::read(const std::string& folder, bool all_ended) {

@@ -30,6 +30,8 @@ class ResultStore {
   /// command that copies results, one minute at most.
   /// @throws Error where these tasks already run
   static ResultStore element(const std::string& folder, const std::string& list);
+  /// Returns the path of the complete file of an element.
+  static std::string element_file(const std::string& folder, const std::string& list);
   /// Opens the folder to read its results; while no element runs, also of those that were killed.
   /// @param all_ended  no element runs, even where the file system has no locks that tell so
   static ResultStore read(const std::string& folder, bool all_ended = false);

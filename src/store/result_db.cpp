@@ -3,8 +3,6 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
-#include <vector>
-
 #include "palpate/core/error.h"
 #include "store/provenance.h"
 
@@ -173,6 +171,13 @@ std::optional<ResultRow> ResultDb::find(const std::string& key) const {
   select.bind(1, key);
   if (!select.step()) return std::nullopt;
   return select.row();
+}
+
+std::vector<std::string> ResultDb::keys() const {
+  Query select(impl_->db, impl_->path, "select key from result");
+  std::vector<std::string> out;
+  while (select.step()) out.push_back(select.text(0));
+  return out;
 }
 
 long ResultDb::count() const {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace palpate::store {
 
@@ -56,6 +57,7 @@ class ResultDb {
 
   void put(const ResultRow& row);  ///< Replaces the row of the same key.
   std::optional<ResultRow> find(const std::string& key) const;
+  std::vector<std::string> keys() const;
   long count() const;  ///< Number of rows.
   /// Copies all rows of another database, in one transaction.
   /// @throws Error where one of the two fails; this database then is as before

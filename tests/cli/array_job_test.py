@@ -72,6 +72,14 @@ class ArrayJobs(Cli):
         self.assertEqual(*((self.folder / name / "study.csv").read_bytes() for name in ("local", "cluster")))
         self.assertFalse((self.folder / "cluster/tasks").exists(), "results are in results.db")
 
+    def test_results_end_a_job_that_squeue_does_not_show(self):
+        (self.folder / "slurm/squeue").write_text(
+            "#!/bin/sh\necho Unable to contact slurm controller >&2\nexit 1\n")
+        (self.folder / "block.toml").write_text(BLOCK)
+        (self.folder / "quick.toml").write_text(QUICK)
+        self.by_slurm("study", "quick.toml", "-o", "cluster")
+        self.assertTrue(self.rows("cluster/study.csv"))
+
     def test_comparison_runs_references_before_sequences(self):
         arguments = ["compare", "cantilever", *QUICK_COMPARISON[2:], "--limit-s", "2", "--integrator",
                      "cvode-bdf", "--integrator", "linearly-implicit-euler"]
@@ -123,7 +131,8 @@ class ArrayJobs(Cli):
                      "-o", "cluster"]
         self.by_slurm(*arguments)
         table = (self.folder / "cluster/compare.csv").read_text()
-        done = self.by_slurm(*arguments, "--linear-solver", "best", status=3, LOSE=f"{len(self.jobs()) + 1}_0")
+        next_job = len(self.jobs()) + 1
+        done = self.by_slurm(*arguments, "--linear-solver", "best", status=3, LOSE=f"{next_job}_0")
         self.assertRegex(done.stderr, r"missing result of task.* ended without them")
         self.assertEqual((self.folder / "cluster/compare.csv").read_text(), table)
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "experiments/unfinished_tasks.h"
 #include "messages.h"
 #include "palpate/core/error.h"
 #include "store/atomic_file.h"
@@ -179,6 +180,29 @@ TEST(ResultStore, WhatCannotBeCopiedIsNotRemoved) {
   signal(SIGXFSZ, SIG_DFL);
   EXPECT_TRUE(fs::exists(folder / "tasks" / "1.db"));
   EXPECT_TRUE(ResultStore::read(folder.string()).find("a"));
+}
+
+TEST(UnfinishedTasks, CountsWhatCompleteFilesDoNotHave) {
+  const TemporaryFolder folder;
+  experiments::UnfinishedTasks unfinished(folder.string(), {task_of("a"), task_of("b"), task_of("c")},
+                                          {"0-1", "2"});
+  EXPECT_EQ(unfinished.count(), 3u);
+  ResultStore element = ResultStore::element(folder.string(), "0-1");
+  element.put(task_of("a"), result_of("a"));
+  Result early = result_of("b");
+  early.status = Status::kOutOfTime;
+  early.limit_s = 0.5;
+  element.put(task_of("b"), early);
+  EXPECT_EQ(unfinished.count(), 3u) << "not complete";
+  element.close();
+  EXPECT_EQ(unfinished.count(), 2u) << "the limit of b is 1 s";
+  EXPECT_EQ(unfinished.count(), 2u);
+  EXPECT_FALSE(unfinished.all_ended());
+  element = ResultStore::element(folder.string(), "2");
+  element.put(task_of("c"), result_of("c"));
+  element.close();
+  EXPECT_EQ(unfinished.count(), 1u);
+  EXPECT_TRUE(unfinished.all_ended()) << "both elements have ended";
 }
 
 TEST(Status, HasOneNamePerValue) {
