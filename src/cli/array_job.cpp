@@ -201,9 +201,13 @@ int TaskFolder::end(const experiments::EngineOutcome& outcome, long refused) {
 }
 
 void TaskFolder::add_missing(const experiments::EngineOutcome& outcome, MissingOutputs& missing) const {
-  if (lost_.empty()) return;
+  if (outcome.stopped) return;
   std::vector<std::size_t> tasks;
-  for (const experiments::LostTask& one : outcome.lost) tasks.push_back(one.index);
+  for (const experiments::LostTask& one : outcome.lost)
+    if (one.why.empty())
+      tasks.push_back(one.index);
+    else
+      missing.add(fmt::format("result of task {}", one.index), one.why + "; the same command runs it again");
   if (!tasks.empty())
     missing.add(fmt::format("result of task{} {}", tasks.size() == 1 ? "" : "s", experiments::text_of(tasks)),
                 lost_);

@@ -7,12 +7,14 @@ of an array one after another: the same results as without it. study_slurm_test.
 import csv
 import os
 import re
+import signal
+import subprocess
 import sys
 import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
-from program import QUICK_COMPARISON, Cli  # noqa: E402
+from program import PROGRAM, QUICK_COMPARISON, Cli  # noqa: E402
 from study_scenes import BLOCK, QUICK, QUICK_TASKS  # noqa: E402
 
 SBATCH = r"""#!/usr/bin/env python3
@@ -30,6 +32,13 @@ print(number)
 """
 # Results of a run that a clock determines.
 TIMES = re.compile(r"_s($|_)|^cpu|^repeats$")
+
+
+def children(process):
+    try:
+        return [int(one) for one in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+    except OSError:  # it has ended
+        return []
 
 
 class ArrayJobs(Cli):
@@ -118,6 +127,22 @@ class ArrayJobs(Cli):
         self.assertRegex(done.stderr, r"missing result of task 0 \(job 1 ended without them")
         self.by_slurm(*arguments, "-o", "cluster")
         self.assertEqual(self.jobs(), [2, 1, 1], "the reference, then the sequence")
+
+    def test_a_comparison_reports_a_task_that_was_killed(self):
+        arguments = ["compare", "cantilever", *QUICK_COMPARISON, "--integrator", "linearly-implicit-euler",
+                     "-o", "local"]
+        command = subprocess.Popen([str(PROGRAM), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   text=True, cwd=self.folder)
+        killed = False
+        while command.poll() is None and not killed:  # the first task, as the kernel does without memory
+            for task in [task for helper in children(command.pid) for task in children(helper)][:1]:
+                os.kill(task, signal.SIGKILL)
+                killed = True
+        _, errors = command.communicate(timeout=300)
+        self.assertTrue(killed)
+        self.assertEqual(command.returncode, 3, errors)
+        self.assertRegex(errors, r"result of task \d+ \(killed by signal 9 .*; the same command runs it")
+        self.good(*arguments)
 
     def test_trials_of_solvers_come_first(self):
         self.by_slurm("compare", "cantilever", *QUICK_COMPARISON, "--integrator", "linearly-implicit-euler",
