@@ -3,6 +3,9 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
+
 #include "palpate/core/error.h"
 #include "store/provenance.h"
 
@@ -122,9 +125,11 @@ struct ResultDb::Impl {
 
   void execute(const std::string& sql) const {
     char* message = nullptr;
-    if (sqlite3_exec(db, sql.c_str(), nullptr, nullptr, &message) == SQLITE_OK) return;
+    const int code = sqlite3_exec(db, sql.c_str(), nullptr, nullptr, &message);
+    if (code == SQLITE_OK) return;
     const std::string why = message ? message : "unknown";
     sqlite3_free(message);
+    if (code == SQLITE_FULL) fail("{}: cannot be written: {}", path, std::strerror(ENOSPC));
     fail(
         "{}: is not a database of palpate's results, or cannot be written ({}); remove it, or choose another "
         "folder with -o DIR",
