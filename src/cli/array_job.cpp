@@ -14,6 +14,7 @@
 #include "cli/stop.h"
 #include "core/program.h"
 #include "experiments/indices.h"
+#include "experiments/unfinished_tasks.h"
 #include "palpate/core/error.h"
 #include "store/atomic_file.h"
 
@@ -40,14 +41,18 @@ Submitted last_submitted(const std::string& folder) {
   return out;
 }
 
-/// Waits until the job has ended, or the user stops.
-void wait_for(const std::string& job) {
+/// Waits until the job has ended, or the user stops.  Where squeue does not answer, the results tell.
+void wait_for(const std::string& job, experiments::UnfinishedTasks unfinished, std::size_t tasks) {
   Progress progress("job " + job);
   double pause_s = kFirstWaitSeconds;
   bool said = false;
   while (!stop_flag()) {
     const JobState state = experiments::job_state(job);
     if (state == JobState::kOver) return;
+    if (state == JobState::kUnknown && unfinished.all_ended()) return;
+    const std::size_t left = unfinished.count();
+    progress(1.0 - static_cast<double>(left) / static_cast<double>(tasks),
+             fmt::format("job {}, {} of {} tasks left", job, left, tasks));
     if (state == JobState::kUnknown && !said) {
       progress.wipe();
       fmt::print(stderr, "palpate: squeue does not answer; waiting for its controller\n");
@@ -121,9 +126,12 @@ experiments::Place TaskFolder::place() {
 // Returns the job to wait for: submitted now, or by an earlier call.
 std::string TaskFolder::job_of(experiments::Experiment& experiment,
                                const std::vector<std::vector<std::size_t>>& groups) {
+  use_.job.elements.clear();
   const Submitted last = last_submitted(folder());
   const std::string key = experiment.key();
-  if (!last.job.empty() && experiments::job_state(last.job) == JobState::kWaiting) {
+  // Slurm may still list a job for some seconds after its last result.
+  if (!last.job.empty() && last.job != waited_for_ &&
+      experiments::job_state(last.job) == JobState::kWaiting) {
     if (last.plan != key)
       fail(
           "job {} of this folder is still queued or running, for another version of the {}: wait for it "
@@ -162,7 +170,11 @@ bool TaskFolder::submit(experiments::Experiment& experiment,
   left_ = arguments_.no_wait;
   if (left_) return false;
   std::fflush(stdout);
-  wait_for(job);
+  std::vector<experiments::Task> tasks;
+  for (const auto& group : groups)
+    for (const std::size_t i : group) tasks.push_back(experiment.task(i));
+  wait_for(job, {folder(), tasks, use_.job.elements}, tasks.size());
+  waited_for_ = job;
   if (stop_flag()) {
     fmt::print(stderr, "palpate: job {} continues without this command\n", job);
     return false;
@@ -189,9 +201,13 @@ int TaskFolder::end(const experiments::EngineOutcome& outcome, long refused) {
 }
 
 void TaskFolder::add_missing(const experiments::EngineOutcome& outcome, MissingOutputs& missing) const {
-  if (lost_.empty()) return;
+  if (outcome.stopped) return;
   std::vector<std::size_t> tasks;
-  for (const experiments::LostTask& one : outcome.lost) tasks.push_back(one.index);
+  for (const experiments::LostTask& one : outcome.lost)
+    if (one.why.empty())
+      tasks.push_back(one.index);
+    else
+      missing.add(fmt::format("result of task {}", one.index), one.why + "; the same command runs it again");
   if (!tasks.empty())
     missing.add(fmt::format("result of task{} {}", tasks.size() == 1 ? "" : "s", experiments::text_of(tasks)),
                 lost_);

@@ -56,7 +56,7 @@ class TaskFolder {
   int end(const experiments::EngineOutcome& outcome, long refused = -1);
   /// Returns why results are missing; empty: no job has ended.
   const std::string& lost() const { return lost_; }
-  /// Adds the tasks that a finished job left without a result.
+  /// Adds the tasks that ended without a result, here or in a job; none where the user stopped the command.
   void add_missing(const experiments::EngineOutcome& outcome, MissingOutputs& missing) const;
   /// Prints how many results are not new.
   static void print_reused(std::size_t reused);
@@ -69,8 +69,8 @@ class TaskFolder {
   Use use_;
   store::FolderLock lock_;
   experiments::ResultStore store_;
-  std::string lost_;
-  bool left_ = false;  ///< Submitted without waiting.
+  std::string lost_, waited_for_;  ///< Why results are missing; the last job that has ended.
+  bool left_ = false;              ///< Submitted without waiting.
 };
 
 /// Checks the key of the list of tasks that an element was submitted for.

@@ -87,6 +87,30 @@ void add_missing(const compare::Comparison& comparison, MissingOutputs& missing)
   }
 }
 
+/// Writes and prints the tables and the report.
+void show(const compare::Comparison& comparison, const std::string& folder, MissingOutputs& missing) {
+  compare::write(comparison, folder);
+  const fs::path points = fs::path(folder) / "compare.csv";
+  const report::Table table = fs::exists(points) ? report::read_csv(points) : report::Table{};
+  for (const compare::SceneComparison& scene : comparison.scenes) {
+    print_reference(scene);
+    const report::Table own = report::rows_where(table, "scene", scene.scene);
+    if (own.rows.empty()) continue;
+    print_trials(scene);
+    print_points(scene);
+    print_prices(own, scene.reference.own_error.position_rel_l2);
+    print_restarts(scene);
+    print_exchange(scene);
+    print_methods(scene);
+    fmt::print("{}\n\n", report::in_words(own, reference_of(scene.reference)));
+  }
+  fmt::print("{}\n", comparison.rules);
+  if (table.rows.empty()) return;
+  const report::RunReport written = report::write_run_report(folder);
+  fmt::print("written: {}\n", written.page.string());
+  missing.add(written);
+}
+
 }  // namespace
 
 TaskFolder::Use use_of(const CompareArguments& a, const std::string& folder) {
@@ -128,28 +152,9 @@ int compare(const CompareArguments& arguments, MissingOutputs& missing) {
   const compare::Comparison comparison = compare_watched(scenes, arguments, tasks.place(), outcome);
   if (tasks.ends_early()) return tasks.end(outcome);
   tasks.add_missing(outcome, missing);
-  compare::write(comparison, folder);
   TaskFolder::print_reused(outcome.reused);
-  const fs::path points = fs::path(folder) / "compare.csv";
-  const report::Table table = fs::exists(points) ? report::read_csv(points) : report::Table{};
-  for (const compare::SceneComparison& scene : comparison.scenes) {
-    print_reference(scene);
-    const report::Table own = report::rows_where(table, "scene", scene.scene);
-    if (own.rows.empty()) continue;
-    print_trials(scene);
-    print_points(scene);
-    print_prices(own, scene.reference.own_error.position_rel_l2);
-    print_restarts(scene);
-    print_exchange(scene);
-    print_methods(scene);
-    fmt::print("{}\n\n", report::in_words(own, reference_of(scene.reference)));
-  }
-  fmt::print("{}\n", comparison.rules);
-  if (!table.rows.empty()) {
-    const report::RunReport written = report::write_run_report(folder);
-    fmt::print("written: {}\n", written.page.string());
-    missing.add(written);
-  }
+  // Without scenes, earlier tables stay as they are.
+  if (!comparison.scenes.empty()) show(comparison, folder, missing);
   if (!comparison.stopped) {
     add_missing(comparison, missing);
     return 0;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <unordered_set>
 
 #include "core/printable.h"
 
@@ -24,27 +25,41 @@ class PrintableMessage : public spdlog::custom_flag_formatter {
   }
 };
 
-/// Sink that stores the text of each distinct message once.
+/// Sink that stores the text of each distinct message once, up to kMostTexts; later ones are counted only,
+/// each time they occur.
 class Memory : public spdlog::sinks::base_sink<std::mutex> {
  public:
   std::vector<std::string> texts() {
     const std::lock_guard lock(mutex_);
-    return texts_;
+    std::vector<std::string> out = texts_;
+    if (more_ > 0) out.push_back(fmt::format("{} more warnings, whose texts were not kept", more_));
+    return out;
   }
   void clear() {
     const std::lock_guard lock(mutex_);
     texts_.clear();
+    known_.clear();
+    more_ = 0;
   }
 
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override {
     std::string text = printable({message.payload.data(), message.payload.size()});
-    if (std::find(texts_.begin(), texts_.end(), text) == texts_.end()) texts_.push_back(std::move(text));
+    if (known_.contains(text)) return;
+    if (texts_.size() == kMostTexts) {
+      ++more_;
+      return;
+    }
+    known_.insert(text);
+    texts_.push_back(std::move(text));
   }
   void flush_() override {}
 
  private:
+  static constexpr std::size_t kMostTexts = 1000;
   std::vector<std::string> texts_;
+  std::unordered_set<std::string> known_;
+  std::size_t more_ = 0;
 };
 
 std::shared_ptr<Memory>& memory() {

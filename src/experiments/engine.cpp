@@ -55,7 +55,7 @@ class Engine {
     } else {
       all = *options.only;
     }
-    all_ = all.size();
+    all_ = options.only ? options.only->size() : all.size();
     for (const std::size_t i : all) open_.push_back({i});
   }
 
@@ -74,7 +74,10 @@ class Engine {
     out_.stopped = stopped();
     out_.complete = open_.empty() && out_.lost.empty();
     for (const Open& open : open_)
-      if (open.submitted) out_.lost.push_back({open.index, ""});
+      if (open.submitted)
+        out_.lost.push_back({open.index, ""});
+      else if (options_.only && !options_.submit && !out_.stopped && is_requested(open.index))
+        out_.lost.push_back({open.index, "needs the result of another task"});
     return std::move(out_);
   }
 
@@ -95,6 +98,7 @@ class Engine {
     for (auto at = open_.begin(); at != open_.end() && !stopped();) {
       const auto current = at++;
       if (!experiment_.is_wanted(current->index)) {
+        ended_ += is_requested(current->index);
         open_.erase(current);
         moved = true;
         continue;
@@ -113,10 +117,11 @@ class Engine {
     return moved;
   }
 
-  bool may_run(const Open& open) const {
-    return pool_ &&
-           (!options_.only || std::binary_search(options_.only->begin(), options_.only->end(), open.index));
+  bool is_requested(std::size_t i) const {
+    return !options_.only || std::binary_search(options_.only->begin(), options_.only->end(), i);
   }
+
+  bool may_run(const Open& open) const { return pool_ && is_requested(open.index); }
 
   bool has_room_for(const Task& task) const {
     return task.alone ? pool_->idle() : pool_->has_room() && !alone_runs_;
@@ -128,8 +133,10 @@ class Engine {
     open.looked_up = true;
     const std::optional<Result> kept = store_.find(task.key);
     if (!kept || (kept->status == Status::kOutOfTime && kept->limit_s < task.limit_s)) return false;
-    ++out_.reused;
-    ++ended_;
+    if (is_requested(open.index)) {
+      ++out_.reused;
+      ++ended_;
+    }
     experiment_.take(open.index, *kept);
     return true;
   }

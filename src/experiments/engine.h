@@ -50,11 +50,12 @@ struct EngineOptions {
   const std::vector<std::size_t>* only = nullptr;
   Submit submit = {};                       ///< Empty: tasks run here.
   const std::atomic<bool>* stop = nullptr;  ///< Set from outside: active tasks are ended.
-  /// Called after each new result.
+  /// Called after each new result, with the share of the requested tasks that are done or not wanted.
   std::function<void(double fraction, const std::string& what)> progress = {};
 };
 
-/// Task without a result: its process was killed from outside, or ran out of memory.
+/// Task without a result: its process was killed from outside, or ran out of memory, or a result that it
+/// needs is not stored and was not requested.
 struct LostTask {
   std::size_t index = 0;
   std::string why;  ///< Empty where an array job ended without it.
@@ -62,7 +63,8 @@ struct LostTask {
 
 /// What run() did.
 struct EngineOutcome {
-  std::size_t reused = 0, run = 0;  ///< Numbers of results that were stored before, and new ones.
+  /// Numbers of results of the requested tasks that were stored before, and new ones.
+  std::size_t reused = 0, run = 0;
   std::vector<LostTask> lost;
   bool stopped = false;
   bool complete = false;    ///< Every wanted task has its result.

@@ -1,9 +1,12 @@
 #include "experiments/result_store.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <vector>
 
+#include "core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 #include "store/content_hash.h"
@@ -16,29 +19,45 @@ using store::FolderLock;
 using store::ResultDb;
 using Access = ResultDb::Access;
 
-constexpr const char* kPart = ".part";
+constexpr const char *kPart = ".part", *kDamaged = ".damaged", *kLock = ".lock";
+constexpr double kLongestWaitSeconds = 60.0;
 
 fs::path main_path(const std::string& folder) { return fs::path(folder) / "results.db"; }
 fs::path tasks_path(const std::string& folder) { return fs::path(folder) / "tasks"; }
 
-/// Returns the files of elements in a fixed order.
-std::vector<fs::path> element_files(const std::string& folder, bool with_parts) {
+/// Returns the entries of `tasks` whose names end so, in a fixed order.
+std::vector<fs::path> files_ending(const std::string& folder, const std::vector<std::string>& ends) {
   std::vector<fs::path> out;
   std::error_code none;
   for (fs::directory_iterator at(tasks_path(folder), none), end; at != end; at.increment(none)) {
     const std::string name = at->path().filename().string();
-    if (name.ends_with(".db") || (with_parts && name.ends_with(kPart))) out.push_back(at->path());
+    if (std::any_of(ends.begin(), ends.end(), [&](const std::string& one) { return name.ends_with(one); }))
+      out.push_back(at->path());
   }
   std::sort(out.begin(), out.end());
   return out;
 }
 
-/// Copies the results of elements.  A file that a failing disk has damaged is left out: its tasks are run
-/// again.
-void copy_elements(const std::vector<fs::path>& files, ResultDb& to) {
-  for (const fs::path& file : files) try {
-      to.put_all(ResultDb(file.string(), Access::kSingle));
-    } catch (const Error& damaged) { log::warn("{}", damaged.what()); }
+/// Returns the files of elements.
+std::vector<fs::path> element_files(const std::string& folder, bool with_parts) {
+  return files_ending(folder,
+                      with_parts ? std::vector<std::string>{".db", kPart} : std::vector<std::string>{".db"});
+}
+
+/// Copies the results of an element.  Its tasks are run again where the file cannot be read: a failing disk
+/// may have damaged it.
+/// @return whether the file could be read  @throws Error where `to` cannot be written
+bool copy_element(const fs::path& file, ResultDb& to) {
+  std::unique_ptr<ResultDb> from;
+  try {
+    from = std::make_unique<ResultDb>(file.string(), Access::kSingle);
+    from->check_readable();
+  } catch (const Error& damaged) {
+    log::warn("{}", damaged.what());
+    return false;
+  }
+  to.put_all(*from);
+  return true;
 }
 
 void remove_file(const fs::path& path) {
@@ -47,16 +66,59 @@ void remove_file(const fs::path& path) {
   if (failed) fail("{}: cannot be removed: {}", path.string(), failed.message());
 }
 
-/// Copies the results of elements into results.db, and removes their files.
+/// Renames an unreadable file, and the journal that SQLite may have left beside it.
+void set_aside(const fs::path& file) {
+  const std::string kept = file.string() + kDamaged;
+  std::error_code none, failed;
+  fs::rename(file.string() + "-journal", kept + "-journal", none);
+  fs::rename(file, kept, failed);
+  if (failed) fail("{}: cannot be renamed to {}: {}", file.string(), kept, failed.message());
+  log::warn("{}: its results cannot be read, and are kept in {}", file.string(), kept);
+}
+
+/// Copies the results of elements into results.db, and removes the files that were copied.
 void merge_elements(const std::string& folder, bool with_parts, ResultDb& to) {
-  const std::vector<fs::path> files = element_files(folder, with_parts);
-  copy_elements(files, to);
-  for (const fs::path& file : files) remove_file(file);
+  for (const fs::path& file : element_files(folder, with_parts))
+    if (copy_element(file, to))
+      remove_file(file);
+    else
+      set_aside(file);
+  for (const fs::path& lock : files_ending(folder, {kLock})) remove_file(lock);
+}
+
+/// Locks the folder of the elements' files.  @return nothing where another process uses it
+std::optional<ResultFolder> lock_alone(const std::string& folder) {
+  try {
+    return ResultFolder(tasks_path(folder).string());
+  } catch (const Error&) { return std::nullopt; }
 }
 
 /// Returns a file name for a list of tasks.
 std::string name_of(const std::string& list) {
   return list.size() <= 100 ? list : store::ContentHash().add(list).hex();
+}
+
+/// Locks the folder of the elements' files together with other elements.  Waits, since a command that copies
+/// results holds it for some seconds.
+ResultFolder lock_shared(const fs::path& tasks) {
+  ResultFolder::make(tasks.string());
+  const double start = wall_seconds();
+  while (true) try {
+      return ResultFolder(tasks.string(), ResultFolder::Access::kShared);
+    } catch (const Error&) {
+      if (wall_seconds() - start > kLongestWaitSeconds) throw;
+      usleep(100000);
+    }
+}
+
+/// Locks a list of tasks, by a folder that is removed with the element's file: an element that starts the
+/// same list later must find the same folder.
+ResultFolder lock_list(const fs::path& tasks, const std::string& list) {
+  const std::string path = (tasks / (name_of(list) + kLock)).string();
+  ResultFolder::make(path);
+  try {
+    return ResultFolder(path);
+  } catch (const Error& busy) { fail("these tasks already run, --task {}: {}", list, busy.what()); }
 }
 
 }  // namespace
@@ -80,8 +142,9 @@ ResultStore ResultStore::element(const std::string& folder, const std::string& l
   ResultStore out;
   out.folder_ = folder;
   const fs::path tasks = tasks_path(folder);
-  out.tasks_lock_ = FolderLock(tasks.string(), FolderLock::Access::kShared);
-  out.element_ = (tasks / (name_of(list) + ".db")).string();
+  out.tasks_lock_ = lock_shared(tasks);
+  out.list_lock_ = lock_list(tasks, list);
+  out.element_ = element_file(folder, list);
   // The element's own earlier results, after a requeue.
   if (fs::exists(out.element_)) fs::rename(out.element_, out.element_ + kPart);
   out.extra_ = std::make_unique<ResultDb>(out.element_ + kPart, Access::kSingle);
@@ -91,19 +154,25 @@ ResultStore ResultStore::element(const std::string& folder, const std::string& l
   return out;
 }
 
+std::string ResultStore::element_file(const std::string& folder, const std::string& list) {
+  return (tasks_path(folder) / (name_of(list) + ".db")).string();
+}
+
 ResultStore ResultStore::read(const std::string& folder, bool all_ended) {
   ResultStore out;
   out.extra_ = std::make_unique<ResultDb>(":memory:");
   out.main_.reset();
-  const bool any = !element_files(folder, all_ended).empty();
-  try {
-    if (any) {
-      const FolderLock lock(tasks_path(folder).string());
+  if (!element_files(folder, true).empty()) {
+    if (const auto lock = lock_alone(folder)) {
       ResultDb all(main_path(folder).string());
-      merge_elements(folder, all_ended, all);
-      if (std::error_code not_empty; all_ended) fs::remove(tasks_path(folder), not_empty);
+      // With the lock, what an element has left incomplete belongs to no process.
+      const bool none_runs = all_ended || lock->is_locked();
+      merge_elements(folder, none_runs, all);
+      if (std::error_code not_empty; none_runs) fs::remove(tasks_path(folder), not_empty);
+    } else {
+      for (const fs::path& file : element_files(folder, false)) copy_element(file, *out.extra_);
     }
-  } catch (const Error&) { copy_elements(element_files(folder, false), *out.extra_); }  // Others are writing.
+  }
   if (fs::exists(main_path(folder)))
     out.main_ = std::make_unique<ResultDb>(main_path(folder).string(), Access::kRead);
   return out;
@@ -141,6 +210,7 @@ void ResultStore::close() {
   extra_.reset();
   if (!element_.empty()) fs::rename(element_ + kPart, element_);
   element_.clear();
+  list_lock_ = {};
   tasks_lock_ = {};
 }
 

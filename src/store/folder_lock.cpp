@@ -57,6 +57,14 @@ std::string command_of(long process) {
        who);
 }
 
+/// Returns whether the path still leads to an open folder: another process may have removed it.
+bool has_path(int folder, const std::string& path) {
+  struct stat opened {};
+  struct stat named {};
+  return ::fstat(folder, &opened) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
 }  // namespace
 
 void FolderLock::make(const std::string& path) {
@@ -71,10 +79,14 @@ void FolderLock::make(const std::string& path) {
 }
 
 FolderLock::FolderLock(const std::string& path, Access access) {
-  make(path);
-  lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   const int kind = access == Access::kAlone ? LOCK_EX : LOCK_SH;
-  if (lock_ < 0 || ::flock(lock_, kind | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  do {
+    if (lock_ >= 0) ::close(lock_);
+    make(path);
+    lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    is_locked_ = lock_ >= 0 && ::flock(lock_, kind | LOCK_NB) == 0;
+  } while (is_locked_ && !has_path(lock_, path));
+  if (lock_ < 0 || is_locked_ || errno != EWOULDBLOCK) return;
   const int folder = std::exchange(lock_, -1);
   try {
     fail_busy(path, folder);

@@ -20,14 +20,19 @@ class FolderLock {
   /// Creates the folder, without a lock.  @throws Error where it cannot be created or written
   static void make(const std::string& path);
   ~FolderLock();
-  FolderLock(FolderLock&& other) noexcept : lock_(std::exchange(other.lock_, -1)) {}
+  FolderLock(FolderLock&& other) noexcept
+      : lock_(std::exchange(other.lock_, -1)), is_locked_(std::exchange(other.is_locked_, false)) {}
   FolderLock& operator=(FolderLock&& other) noexcept {
     std::swap(lock_, other.lock_);
+    std::swap(is_locked_, other.is_locked_);
     return *this;
   }
+  /// Returns whether the lock is held; false on a file system without locks.
+  bool is_locked() const { return is_locked_; }
 
  private:
   int lock_ = -1;
+  bool is_locked_ = false;
 };
 
 }  // namespace palpate::store

@@ -3,7 +3,8 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
-#include <vector>
+#include <cerrno>
+#include <cstring>
 
 #include "palpate/core/error.h"
 #include "store/provenance.h"
@@ -124,9 +125,11 @@ struct ResultDb::Impl {
 
   void execute(const std::string& sql) const {
     char* message = nullptr;
-    if (sqlite3_exec(db, sql.c_str(), nullptr, nullptr, &message) == SQLITE_OK) return;
+    const int code = sqlite3_exec(db, sql.c_str(), nullptr, nullptr, &message);
+    if (code == SQLITE_OK) return;
     const std::string why = message ? message : "unknown";
     sqlite3_free(message);
+    if (code == SQLITE_FULL) fail("{}: cannot be written: {}", path, std::strerror(ENOSPC));
     fail(
         "{}: is not a database of palpate's results, or cannot be written ({}); remove it, or choose another "
         "folder with -o DIR",
@@ -175,6 +178,13 @@ std::optional<ResultRow> ResultDb::find(const std::string& key) const {
   return select.row();
 }
 
+std::vector<std::string> ResultDb::keys() const {
+  Query select(impl_->db, impl_->path, "select key from result");
+  std::vector<std::string> out;
+  while (select.step()) out.push_back(select.text(0));
+  return out;
+}
+
 long ResultDb::count() const {
   Query count(impl_->db, impl_->path, "select count(*) from result");
   count.step();
@@ -184,8 +194,19 @@ long ResultDb::count() const {
 void ResultDb::put_all(const ResultDb& other) {
   Query select(other.impl_->db, other.impl_->path, "select * from result");
   impl_->execute("begin");
-  while (select.step()) put(select.row());
-  impl_->execute("commit");
+  try {
+    while (select.step()) put(select.row());
+    impl_->execute("commit");
+  } catch (...) {
+    // Fails where SQLite has rolled back by itself, as it does for a full disk.
+    sqlite3_exec(impl_->db, "rollback", nullptr, nullptr, nullptr);
+    throw;
+  }
+}
+
+void ResultDb::check_readable() const {
+  Query select(impl_->db, impl_->path, "select * from result");
+  while (select.step()) select.row();
 }
 
 }  // namespace palpate::store

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace palpate::store {
 
@@ -56,9 +57,13 @@ class ResultDb {
 
   void put(const ResultRow& row);  ///< Replaces the row of the same key.
   std::optional<ResultRow> find(const std::string& key) const;
+  std::vector<std::string> keys() const;
   long count() const;  ///< Number of rows.
   /// Copies all rows of another database, in one transaction.
+  /// @throws Error where one of the two fails; this database then is as before
   void put_all(const ResultDb& other);
+  /// Reads all rows.  @throws Error where the file is damaged
+  void check_readable() const;
 
  private:
   struct Impl;

@@ -7,12 +7,14 @@ of an array one after another: the same results as without it. study_slurm_test.
 import csv
 import os
 import re
+import signal
+import subprocess
 import sys
 import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
-from program import QUICK_COMPARISON, Cli  # noqa: E402
+from program import PROGRAM, QUICK_COMPARISON, Cli  # noqa: E402
 from study_scenes import BLOCK, QUICK, QUICK_TASKS  # noqa: E402
 
 SBATCH = r"""#!/usr/bin/env python3
@@ -30,6 +32,13 @@ print(number)
 """
 # Results of a run that a clock determines.
 TIMES = re.compile(r"_s($|_)|^cpu|^repeats$")
+
+
+def children(process):
+    try:
+        return [int(one) for one in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+    except OSError:  # it has ended
+        return []
 
 
 class ArrayJobs(Cli):
@@ -72,6 +81,14 @@ class ArrayJobs(Cli):
         self.assertEqual(*((self.folder / name / "study.csv").read_bytes() for name in ("local", "cluster")))
         self.assertFalse((self.folder / "cluster/tasks").exists(), "results are in results.db")
 
+    def test_results_end_a_job_that_squeue_does_not_show(self):
+        (self.folder / "slurm/squeue").write_text(
+            "#!/bin/sh\necho Unable to contact slurm controller >&2\nexit 1\n")
+        (self.folder / "block.toml").write_text(BLOCK)
+        (self.folder / "quick.toml").write_text(QUICK)
+        self.by_slurm("study", "quick.toml", "-o", "cluster")
+        self.assertTrue(self.rows("cluster/study.csv"))
+
     def test_comparison_runs_references_before_sequences(self):
         arguments = ["compare", "cantilever", *QUICK_COMPARISON[2:], "--limit-s", "2", "--integrator",
                      "cvode-bdf", "--integrator", "linearly-implicit-euler"]
@@ -111,12 +128,38 @@ class ArrayJobs(Cli):
         self.by_slurm(*arguments, "-o", "cluster")
         self.assertEqual(self.jobs(), [2, 1, 1], "the reference, then the sequence")
 
+    def test_a_comparison_reports_a_task_that_was_killed(self):
+        arguments = ["compare", "cantilever", *QUICK_COMPARISON, "--integrator", "linearly-implicit-euler",
+                     "-o", "local"]
+        command = subprocess.Popen([str(PROGRAM), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   text=True, cwd=self.folder)
+        killed = False
+        while command.poll() is None and not killed:  # the first task, as the kernel does without memory
+            for task in [task for helper in children(command.pid) for task in children(helper)][:1]:
+                os.kill(task, signal.SIGKILL)
+                killed = True
+        _, errors = command.communicate(timeout=300)
+        self.assertTrue(killed)
+        self.assertEqual(command.returncode, 3, errors)
+        self.assertRegex(errors, r"result of task \d+ \(killed by signal 9 .*; the same command runs it")
+        self.good(*arguments)
+
     def test_trials_of_solvers_come_first(self):
         self.by_slurm("compare", "cantilever", *QUICK_COMPARISON, "--integrator", "linearly-implicit-euler",
                       "--linear-solver", "best", "-o", "cluster")
         self.assertGreaterEqual(len(self.jobs()), 3, "references, trials, sequences")
         self.assertTrue(self.rows("cluster/trials.csv"))
         self.assertTrue(self.rows("cluster/compare.csv"))
+
+    def test_a_lost_trial_leaves_earlier_tables(self):
+        arguments = ["compare", "cantilever", *QUICK_COMPARISON, "--integrator", "linearly-implicit-euler",
+                     "-o", "cluster"]
+        self.by_slurm(*arguments)
+        table = (self.folder / "cluster/compare.csv").read_text()
+        next_job = len(self.jobs()) + 1
+        done = self.by_slurm(*arguments, "--linear-solver", "best", status=3, LOSE=f"{next_job}_0")
+        self.assertRegex(done.stderr, r"missing result of task.* ended without them")
+        self.assertEqual((self.folder / "cluster/compare.csv").read_text(), table)
 
     def test_matrix(self):
         arguments = ["stability", "--row", "youngs-modulus", "--integrator", "backward-euler", "--seeds", "1"]

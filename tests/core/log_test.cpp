@@ -20,3 +20,16 @@ TEST(Log, KeepsEveryWarningOnce) {
   log::warn("too fast");
   EXPECT_EQ(log::warnings(), (std::vector<std::string>{"too fast"}));
 }
+
+TEST(Log, KeepsABoundedNumberOfTexts) {
+  log::configure(true, false);
+  for (int i = 0; i < 1005; ++i) log::warn("warning {}", i);
+  log::warn("warning {}", 999);  // known
+  std::vector<std::string> kept = log::warnings();
+  ASSERT_EQ(kept.size(), 1001u);
+  EXPECT_EQ(kept[999], "warning 999");
+  EXPECT_EQ(kept[1000], "5 more warnings, whose texts were not kept");
+  log::forget_warnings();
+  log::warn("warning {}", 1004);
+  EXPECT_EQ(log::warnings(), (std::vector<std::string>{"warning 1004"}));
+}

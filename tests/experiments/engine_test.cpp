@@ -173,6 +173,7 @@ TEST(Engine, StopsWithoutTheActiveTask) {
 
 TEST(Engine, AnElementRunsItsTasksOnly) {
   ResultStore store;
+  std::vector<LostTask> lost;
   const auto chain = [](Inputs& inputs) {
     inputs.ready = [&inputs](std::size_t i) { return i == 0 || inputs.taken.contains(i - 1); };
   };
@@ -181,12 +182,33 @@ TEST(Engine, AnElementRunsItsTasksOnly) {
     chain(inputs);
     const EngineOutcome outcome = run(inputs, Place{&store, {}, list, plan}, with_jobs(1));
     EXPECT_EQ(outcome.other_plan, plan == "another list");
+    lost = outcome.lost;
+    EXPECT_EQ(outcome.reused, 0u) << "results of other elements were not requested";
     return inputs.started;
   };
   EXPECT_EQ(run_list("1-2", "the list"), Indices{}) << "what they need is not there";
+  ASSERT_EQ(lost.size(), 2u);
+  EXPECT_EQ(lost[0].index, 1u);
+  EXPECT_EQ(lost[0].why, "needs the result of another task");
   EXPECT_EQ(run_list("0", "another list"), Indices{});
   EXPECT_EQ(run_list("0", "the list"), Indices{0});
   EXPECT_EQ(run_list("1-2", ""), (Indices{1, 2}));
+  EXPECT_TRUE(lost.empty());
+}
+
+TEST(Engine, ProgressCountsTheRequestedTasks) {
+  Inputs inputs({"a", "dropped", "b", "not requested"});
+  inputs.ready = [](std::size_t) { return true; };
+  inputs.wanted = [](std::size_t i) { return i != 1; };
+  const Indices only = {0, 1, 2};
+  EngineOptions options = with_jobs(1);
+  options.only = &only;
+  std::vector<double> fractions;
+  options.progress = [&](double fraction, const std::string&) { fractions.push_back(fraction); };
+  ResultStore store;
+  run(inputs, store, options);
+  ASSERT_EQ(fractions.size(), 2u);
+  EXPECT_NEAR(fractions[1], 1.0, 1e-12);
 }
 
 TEST(Engine, SubmitsGroupsWhenTheyAreReady) {

@@ -77,6 +77,31 @@ TEST_F(ResultDbTest, CopiesAllRowsOfAnother) {
   EXPECT_EQ(one.find("c")->bytes, sample("c").bytes);
 }
 
+TEST_F(ResultDbTest, ACopyThatFailsLeavesTheDatabaseAsItWas) {
+  const std::string damaged = (folder_ / "damaged.db").string();
+  {
+    ResultDb db(damaged);
+    for (const char* key : {"a", "b"}) {
+      ResultRow large = sample(key);
+      large.bytes.assign(100000, 'x');
+      db.put(large);
+    }
+  }
+  // Damages the second row only.
+  const std::uintmax_t size = std::filesystem::file_size(damaged);
+  std::filesystem::resize_file(damaged, size - 50000);
+  std::filesystem::resize_file(damaged, size);
+  {
+    ResultDb to(path_);
+    const ResultDb from(damaged, ResultDb::Access::kSingle);
+    EXPECT_THROW(from.check_readable(), Error);
+    EXPECT_THROW(to.put_all(from), Error);
+    EXPECT_EQ(to.count(), 0);
+    to.put(sample("later"));
+  }
+  EXPECT_TRUE(ResultDb(path_, ResultDb::Access::kRead).find("later")) << "was left in an open transaction";
+}
+
 TEST_F(ResultDbTest, RefusesOtherFiles) {
   const std::string text = (folder_ / "text.db").string();
   std::ofstream(text) << std::string(5000, 'x');

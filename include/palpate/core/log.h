@@ -17,7 +17,7 @@ using spdlog::warn;
 void configure(bool quiet, bool verbose);
 
 /// Returns the distinct warnings since configure() or forget_warnings(), in order of first occurrence;
-/// summary.json stores them.
+/// summary.json stores them.  After 1000 texts, one more gives the number of the other warnings.
 std::vector<std::string> warnings();
 
 /// Forgets the warnings of an earlier run of the process.

@@ -61,12 +61,18 @@ Comparison run(const std::vector<scene::Description>& scenes, const CompareOptio
     }
     // An array job ran these trials, or has to finish them: the sequences are not known before.
     const bool planned = !place.plan.empty() && !outcome.other_plan;
-    if (planned || (place.submit && !outcome.complete)) return {};
+    if (planned || (place.submit && !outcome.complete)) {
+      done.scenes.clear();
+      done.stopped = outcome.stopped;
+      return done;
+    }
+    for (experiments::LostTask& one : outcome.lost) one.why = "trial of a linear solver: " + one.why;
   }
   ComparisonTasks tasks(scenes, options, choices, false);
-  const std::size_t reused_by_trials = outcome.reused;
+  const experiments::EngineOutcome of_trials = outcome;
   outcome = experiments::run(tasks, place, engine);
-  outcome.reused += reused_by_trials;
+  outcome.reused += of_trials.reused;
+  outcome.lost.insert(outcome.lost.begin(), of_trials.lost.begin(), of_trials.lost.end());
   Comparison out = tasks.finish();
   for (std::size_t s = 0; s < scenes.size(); ++s) out.scenes[s].trials = std::move(tried[s]);
   out.reused = static_cast<long>(outcome.reused);
