@@ -87,9 +87,9 @@ void merge_elements(const std::string& folder, bool with_parts, ResultDb& to) {
 }
 
 /// Locks the folder of the elements' files.  @return nothing where another process uses it
-std::optional<ResultFolder> lock_alone(const std::string& folder) {
+std::optional<FolderLock> lock_alone(const std::string& folder) {
   try {
-    return ResultFolder(tasks_path(folder).string());
+    return FolderLock(tasks_path(folder).string());
   } catch (const Error&) { return std::nullopt; }
 }
 
@@ -100,11 +100,11 @@ std::string name_of(const std::string& list) {
 
 /// Locks the folder of the elements' files together with other elements.  Waits, since a command that copies
 /// results holds it for some seconds.
-ResultFolder lock_shared(const fs::path& tasks) {
-  ResultFolder::make(tasks.string());
+FolderLock lock_shared(const fs::path& tasks) {
+  FolderLock::make(tasks.string());
   const double start = wall_seconds();
   while (true) try {
-      return ResultFolder(tasks.string(), ResultFolder::Access::kShared);
+      return FolderLock(tasks.string(), FolderLock::Access::kShared);
     } catch (const Error&) {
       if (wall_seconds() - start > kLongestWaitSeconds) throw;
       usleep(100000);
@@ -113,11 +113,11 @@ ResultFolder lock_shared(const fs::path& tasks) {
 
 /// Locks a list of tasks, by a folder that is removed with the element's file: an element that starts the
 /// same list later must find the same folder.
-ResultFolder lock_list(const fs::path& tasks, const std::string& list) {
+FolderLock lock_list(const fs::path& tasks, const std::string& list) {
   const std::string path = (tasks / (name_of(list) + kLock)).string();
-  ResultFolder::make(path);
+  FolderLock::make(path);
   try {
-    return ResultFolder(path);
+    return FolderLock(path);
   } catch (const Error& busy) { fail("these tasks already run, --task {}: {}", list, busy.what()); }
 }
 

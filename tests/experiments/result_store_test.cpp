@@ -129,7 +129,7 @@ TEST(ResultStore, TheSameTasksDoNotRunTwiceAtATime) {
 
 TEST(ResultStore, AnElementWaitsForACommandThatCopies) {
   const TemporaryFolder folder;
-  store::ResultFolder lock((folder / "tasks").string());
+  store::FolderLock lock((folder / "tasks").string());
   std::thread copies([&] {
     usleep(300000);
     fs::remove(folder / "tasks");
