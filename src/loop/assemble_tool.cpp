@@ -148,7 +148,7 @@ ToolInstance assemble_tool(World& world, const scene::Hand& hand, std::unique_pt
                         .device = std::move(device),
                         .limiter = limiter,
                         .scheme = std::move(scheme),
-                        .motors = motors};
+                        .motors = std::move(motors)};
   };
   if (d.exchange.scheme == "monolithic") return instance(assemble_block(world, hand, *device, own_device));
   if (!ticks)

@@ -22,8 +22,8 @@ TYPES = {
     "list of numbers": lambda value: isinstance(value, list) and all(map(TYPES["number"], value)),
 }
 # Longest first: "_n_m" is the ending of a stiffness and of a torque.
-UNITS = {"n_m_rad": ("N m/rad",), "per_s": ("1/s",), "n_m": ("N m", "N/m"), "mib": ("MiB",), "rad": ("rad",),
-         "m2": ("m²",), "m": ("m",), "n": ("N",), "j": ("J",), "s": ("s",)}
+UNITS = {"n_m_rad": ("N m/rad",), "n_s_m": ("N s/m",), "per_s": ("1/s",), "n_m": ("N m", "N/m"),
+         "mib": ("MiB",), "rad": ("rad",), "m2": ("m²",), "m": ("m",), "n": ("N",), "j": ("J",), "s": ("s",)}
 SNAKE_CASE = re.compile("[a-z][a-z0-9]*(_[a-z0-9]+)*")
 # Keys that no scene of this test has: they need an event that is rare, a peer, or minutes.
 ELSEWHERE = {"figures.options.ordering", "figures.sizes.smallest_step_part",

@@ -18,7 +18,7 @@ TEST(MissingOutputs, NameTheOutputAndTheFirstLineOfTheReason) {
 TEST(MissingOutputs, FiguresOfAPageAreGroupedByReason) {
   report::RunReport page;
   page.page = "out/report.html";
-  page.missing_figures = {{"force", "no ffmpeg"}, {"energy", "no font"}, {"bodies", "too large"}};
+  page.missing_figures = {{"force", "no ffmpeg"}, {"energy", "no ffmpeg"}, {"bodies", "too large"}};
   session::MissingOutputs missing;
   missing.add(page);
   EXPECT_EQ(missing.outputs(),

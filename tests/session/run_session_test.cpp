@@ -148,7 +148,7 @@ TEST_F(RunSession, ResumedFromACheckpointIsBitwiseEqual) {
   half.scene = whole.scene;
   std::atomic<bool> stop{false};
   session::Callbacks callbacks;
-  callbacks.progress = [&stop](double share) { stop = share > 0.55; };
+  callbacks.progress = [&stop](double share) { stop = share > 0.45; };
   callbacks.stop = &stop;
   {
     session::RunSession run(half, description);
@@ -185,7 +185,7 @@ TEST_F(RunSession, ResumingRequiresTheSameSceneAndACheckpoint) {
   const scene::Description description = load(std::string(kBar) + kRecord, options);
   std::atomic<bool> stop{false};
   session::Callbacks callbacks;
-  callbacks.progress = [&stop](double share) { stop = share > 0.55; };
+  callbacks.progress = [&stop](double share) { stop = share > 0.45; };
   callbacks.stop = &stop;
   session::RunSession(options, description).run(callbacks);
   session::Resumption resumption = session::read_resumption(options.folder);
