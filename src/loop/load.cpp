@@ -1,3 +1,4 @@
+#include "palpate/loop/load.h"
 #include "contact/methods.h"
 #include "loop/registries.h"
 #include "palpate/contact/obstacle.h"
@@ -8,7 +9,6 @@
 #include "palpate/fem/laws.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
-#include "palpate/loop/load.h"
 #include "palpate/mesh/generators.h"
 #include "palpate/tool/tool.h"
 #include "store/model_cache.h"

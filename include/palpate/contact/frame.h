@@ -41,8 +41,8 @@ class TrajectoryFrame : public MovingFrame {
   /// Motion at one time.
   struct Knot {
     double t = 0.0;  ///< Time [s].
-    Pose pose;
-    Twist twist;
+    Pose pose;       ///< Pose of the frame.
+    Twist twist;     ///< Twist of its origin.
   };
   /// Removes all knots.
   void clear();

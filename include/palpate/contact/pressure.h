@@ -20,13 +20,15 @@ struct Pressure {
 
 /// Pressure law of a ContactSpec, with its names resolved.
 struct PressureLaw {
-  enum class Kind { kKelvinVoigt, kHuntCrossley } kind = Kind::kKelvinVoigt;
-  double k = 0.0;                ///< Stiffness [Pa/m]; per point [N/m].
-  double d = 0.0;                ///< Damping [Pa s/m]; per point [N s/m]; or c of hunt_crossley [s/m].
-  double onset = 0.0;            ///< w [m]
-  double friction = 0.0;         ///< mu [-].
-  double regularisation = 1e-3;  ///< v_r [m/s].
-  double retardation = 0.0;      ///< tau of the friction springs [s]; 0: none.
+  /// Laws of damping.
+  enum class Kind { kKelvinVoigt, kHuntCrossley };
+  Kind kind = Kind::kKelvinVoigt;  ///< Law of this contact.
+  double k = 0.0;                  ///< Stiffness [Pa/m]; per point [N/m].
+  double d = 0.0;                  ///< Damping [Pa s/m]; per point [N s/m]; or c of hunt_crossley [s/m].
+  double onset = 0.0;              ///< w [m]
+  double friction = 0.0;           ///< mu [-].
+  double regularisation = 1e-3;    ///< v_r [m/s].
+  double retardation = 0.0;        ///< tau of the friction springs [s]; 0: none.
   /// True: step matrices omit the derivative of friction with respect to pressure (sample_math.cpp).
   bool symmetric_tangent = false;
   /// True: springs per point instead of per area: `Pressure::p` is a force [N], and the area of every sample
@@ -42,10 +44,13 @@ PressureLaw pressure_law(const ContactSpec& spec);
 
 /// s(delta) with its derivative and its integral from 0.
 struct Onset {
-  double value, slope, integral;
+  double value;     ///< s(delta) [m].
+  double slope;     ///< Derivative s'(delta) [-].
+  double integral;  ///< Integral of s from 0 to delta [m^2].
 };
-// Evaluates the onset function: a parabola that joins the line delta - w/2 with equal value w/2 and slope 1
-// at delta = w. Its integral is delta^3/(6 w) up to w, w^2/6 there, and delta^2/2 - w delta/2 + w^2/6 beyond.
+/// Evaluates the onset function of a width [m] at a depth [m]: a parabola that joins the line delta - w/2
+/// with equal value w/2 and slope 1 at delta = w. Its integral is delta^3/(6 w) up to w, w^2/6 there, and
+/// delta^2/2 - w delta/2 + w^2/6 beyond.
 inline Onset onset(double width, double depth) {
   if (!(depth > 0.0)) return {0.0, 0.0, 0.0};
   if (depth < width)
@@ -61,6 +66,7 @@ inline Onset onset(double width, double depth) {
 // from w on. hunt_crossley keeps s: for any function of depth in its place, m v dv = -F(delta) (1 + a v)
 // ddelta separates, and the speeds before and after an impact are related by the same G(a v) = a v - ln(1 + a
 // v). Where the formula gives tension, the pressure and its derivatives are zero: a contact never pulls.
+/// Evaluates the law at a gap [m] and its rate [m/s].
 inline Pressure pressure(const PressureLaw& law, double gap, double gap_rate) {
   const double depth = -gap, rate = -gap_rate;
   if (!(depth > 0.0)) return {0.0, 0.0, 0.0, 0.0};

@@ -77,6 +77,7 @@ class SampleSource {
   virtual void archive(Archive&) {}
 
  protected:
+  /// @param traits  name and properties, which never change
   explicit SampleSource(SourceTraits traits) : traits_(std::move(traits)) {}
 
  private:

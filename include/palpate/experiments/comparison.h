@@ -68,7 +68,7 @@ struct MethodPoint {
   double query_s = 0.0, cpu_s = 0.0;  ///< Wall time of contact queries; CPU time of the loop [s].
   std::string trouble{};              ///< Reason why the scene could not be run with it; empty: it could.
 
-  void archive(Archive& a);
+  void archive(Archive& a);  ///< Writes the values to an archive, or restores them.
 };
 
 /// Chart, or part of one, that could not be made.

@@ -17,7 +17,7 @@ struct ExchangePoint {
   /// Whether the errors are less than kResolution times the reference error.
   bool unresolved = false, force_unresolved = false, torque_unresolved = false;
 
-  void archive(Archive& a);
+  void archive(Archive& a);  ///< Writes the values to an archive, or restores them.
 };
 
 /// Result of an exchange study.
@@ -28,7 +28,7 @@ struct ExchangeStudy {
   TrajectoryError own_error = no_distance();
   std::string trouble = {};  ///< Reason why there was no check.
 
-  void archive(Archive& a);
+  void archive(Archive& a);  ///< Writes the values to an archive, or restores them.
 };
 
 /// Options of an exchange study.

@@ -14,7 +14,7 @@ enum class Status {
   /// It has not run, or its process was killed from outside or ran out of memory.  Never stored.
   kMissing,
 };
-inline constexpr int kStatuses = 7;
+inline constexpr int kStatuses = 7;  ///< Number of values of Status.
 
 /// Returns the name for tables and files: "ok", "out of time".
 const char* to_string(Status status);

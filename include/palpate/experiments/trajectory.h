@@ -22,7 +22,7 @@ struct Trajectory {
   };
   std::vector<Body> bodies;  ///< In the State's order.
 
-  void archive(Archive& a);
+  void archive(Archive& a);  ///< Writes the values to an archive, or restores them.
 };
 
 /// Records a Trajectory during a run.
@@ -65,7 +65,7 @@ struct TrajectoryError {
   double torque_rms_n_m = 0.0, torque_max_n_m = 0.0;  ///< Torque on the hand, over the common ticks.
   double energy_j = 0.0;                              ///< Largest difference of mechanical energy.
 
-  void archive(Archive& a);
+  void archive(Archive& a);  ///< Writes the values to an archive, or restores them.
 };
 /// Resolution factor: errors must be at least this many times the reference error, which leaves an
 /// uncertainty of a tenth.  Smaller ones are marked, and are excluded from fits and verdicts.
@@ -85,7 +85,7 @@ struct Run {
   loop::RunResult result;  ///< Its CPU time is that of the loop, without assembly and recording.
   double setup_s = 0.0, record_s = 0.0;  ///< CPU time of assembly and of recording [s].
 
-  void archive(Archive& a);
+  void archive(Archive& a);  ///< Writes the values to an archive, or restores them.
 };
 /// Assembles and runs one description.
 /// @param description  scene
