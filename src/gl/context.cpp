@@ -121,10 +121,19 @@ void require_library(const std::string& file, const std::string& package) {
   dlclose(handle);
 }
 
-Context& Context::shared() {
+Context& Context::instance() {
   static Context context;
+  return context;
+}
+
+Context& Context::shared() {
+  Context& context = instance();
   context.make_current();
   return context;
+}
+
+void Context::release_here() {
+  if (opened()) instance().release();
 }
 
 bool Context::opened() { return g_opened; }

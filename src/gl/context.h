@@ -31,6 +31,8 @@ class Context {
   /// @throws Error when no EGL library, device or OpenGL >= 4.3 is found, with the package that provides it
   static Context& shared();
   static bool opened();  ///< Whether the context exists; does not create it.
+  /// Releases the context, if it exists and is current on this thread.  Never throws.
+  static void release_here();
 
   ~Context();
   Context(const Context&) = delete;
@@ -42,6 +44,7 @@ class Context {
 
  private:
   Context();
+  static Context& instance();
   struct Handles;
   std::unique_ptr<Handles> handles_;
   ContextInfo info_;

@@ -10,6 +10,7 @@
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 #include "palpate/loop/load.h"
+#include "render/available.h"
 #include "scene.h"
 #include "session/recorded_movie.h"
 #include "session/recorded_scene.h"
@@ -74,10 +75,16 @@ std::vector<std::string> files_of(const scene::Description& description, const s
   return out;
 }
 
+/// Scope guard: releases the GL context of a call, so that the next one may come from another thread.
+struct ContextOfCall {
+  ~ContextOfCall() { render::release_context(); }
+};
+
 py::dict run_to_end(const session::Options& options, const scene::Description& description,
                     session::Resumption* resumption) {
   refuse_missing_models(description);
   const RunOfProcess right;
+  const ContextOfCall context;
   std::unique_ptr<session::RunSession> run;
   without_gil([&](const session::Callbacks& callbacks) {
     run = std::make_unique<session::RunSession>(options, description, resumption);
@@ -115,6 +122,7 @@ py::dict resume(const std::string& folder) {
 }
 
 std::string movie(const session::MovieOptions& options) {
+  const ContextOfCall context;
   session::MissingOutputs missing;
   session::DrawnFrames drawn;
   without_gil([&](const session::Callbacks& callbacks) {

@@ -6,5 +6,7 @@ namespace palpate::render {
 bool available();
 /// Checks that this build can draw pictures.  @throws Error with the configure option, where it cannot
 void check_available();
+/// Releases the GL context of this thread, if it has one, so that another thread can draw.
+void release_context();
 
 }  // namespace palpate::render

@@ -182,7 +182,7 @@ class Refusals(WithFolder):
         thread.start()
         self.addCleanup(thread.join)
         running.wait()
-        while not (self.folder / "long/summary.json").exists():
+        while thread.is_alive() and not (self.folder / "long/summary.json").exists():
             time.sleep(0.002)
         with self.assertRaisesRegex(palpate.Error, "another thread"):
             palpate.run("one-tet", folder=self.folder / "short")
