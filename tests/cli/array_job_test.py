@@ -135,7 +135,8 @@ class ArrayJobs(Cli):
                                    text=True, cwd=self.folder)
         killed = False
         while command.poll() is None and not killed:  # the first task, as the kernel does without memory
-            for task in [task for helper in children(command.pid) for task in children(helper)][:1]:
+            servers = [server for helper in children(command.pid) for server in children(helper)]
+            for task in [task for server in servers for task in children(server)][:1]:
                 os.kill(task, signal.SIGKILL)
                 killed = True
         _, errors = command.communicate(timeout=300)
