@@ -61,7 +61,7 @@ struct LostTask {
   std::string why;  ///< Empty where an array job ended without it.
 };
 
-/// What run() did.
+/// Outcome of run().
 struct EngineOutcome {
   /// Numbers of results of the requested tasks that were stored before, and new ones.
   std::size_t reused = 0, run = 0;

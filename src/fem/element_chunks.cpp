@@ -132,7 +132,7 @@ Mat3 inverse_triangle(const Mat3& Dm) {
 
 }  // namespace
 
-/// What the chunks are made of: the elements in their order, by chunk and then by material, and the nodes and
+/// Contents of the chunks: the elements in their order, by chunk and then by material, and the nodes and
 /// edges that each chunk uses.
 struct ElementChunks::Plan {
   const TetMesh& rest;

@@ -26,7 +26,7 @@ struct SweepSpec {
   std::vector<std::string> values;
   std::optional<double> from, to;
   int count = 0;
-  Spacing spacing = Spacing::kLinear;  ///< Of values by from, to and count.
+  Spacing spacing = Spacing::kLinear;  ///< Spacing of the values given by from, to and count.
   /// Varies together with the preceding sweep, value by value; else all combinations.
   bool together = false;
 };

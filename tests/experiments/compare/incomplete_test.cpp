@@ -1,5 +1,5 @@
 // Comparisons that are incomplete: runs and references that fail, run out of time or are stopped, and what a
-// comparison takes from its database when it goes on.
+// comparison takes from its results.db when it resumes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
