@@ -96,7 +96,7 @@ class Cases : public experiments::Experiment {
 void CaseEnd::archive(Archive& a) {
   a("wall_s", wall_s);
   a("broken", broken);
-  a.list("measured", measurements, [&a](Measurement& m) {
+  a.list("measurements", measurements, [&a](Measurement& m) {
     a("quantity", m.quantity);
     a("computed", m.computed);
     a("exact", m.exact);

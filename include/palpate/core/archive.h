@@ -130,7 +130,7 @@ class Archive {
   template <class Sequence, class F>
   void list(std::string_view name, Sequence& sequence, F&& f) {
     std::size_t size = sequence.size();
-    (*this)(std::string(name) + ".size", size);
+    (*this)(std::string(name).append(".size"), size);
     check_length(name, static_cast<std::int64_t>(size));
     sequence.resize(size);
     each(name, sequence, f);
