@@ -31,7 +31,7 @@ scene::Description free_tool_scene(double length, double width, double element_s
   d.tool->gravity = true;
   d.tool->coupling = {0.0, 0.0, 0.0, 0.0};
   d.device.emplace();
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 1e-3;
   d.integrator.name = "implicit-midpoint";
   d.integrator.step_s = 1e-4;

@@ -75,7 +75,7 @@ void add_device(const DeviceSpec& spec, OneAxisLoop& loop) {
 OneAxisLoop loop_of(const scene::Description& d) {
   if (!d.tool)
     fail("{}: haptic stability: the scene has no [tool], so nothing that a hand would feel", d.name);
-  if (d.exchange.scheme == "monolithic")
+  if (d.exchange.scheme == scene::ExchangeScheme::kMonolithic)
     fail(
         "{}: haptic stability: exchange.scheme = \"monolithic\" has no ticks of its own; take "
         "--set exchange.scheme=partitioned",

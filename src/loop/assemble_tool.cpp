@@ -6,6 +6,7 @@
 #include "loop/replay.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/device/profile.h"
 #include "palpate/device/registry.h"
 #include "palpate/integrate/integrators.h"
@@ -73,9 +74,9 @@ MonolithicTool assemble_block(World& world, const scene::Hand& hand, const devic
   const ToolSpec& spec = *hand.tool;
   if (spec.tick_s != world.description.tool->tick_s)
     fail(
-        "exchange: scheme = \"monolithic\" samples all tools at the same ticks, but hand \"{}\" has tick_s = "
-        "{}, the first hand {}; make them equal",
-        hand.name, spec.tick_s, world.description.tool->tick_s);
+        "exchange: scheme = \"{}\" samples all tools at the same ticks, but hand \"{}\" has tick_s = {}, the "
+        "first hand {}; make them equal",
+        name_of(world.description.exchange.scheme), hand.name, spec.tick_s, world.description.tool->tick_s);
   const Quat r = quaternion_of(spec.rotation_vector_rad);
   VecX q(7);
   q << r.w(), r.vec(), spec.position_m;
@@ -85,6 +86,12 @@ MonolithicTool assemble_block(World& world, const scene::Hand& hand, const devic
       tool::make_simbody_terms(out.block_id, spec, world.description.gravity_m_s2);
   world.system.add(terms.inertia);
   world.system.add(terms.force);
+  if (world.description.exchange.scheme == scene::ExchangeScheme::kSingleRate) {
+    out.sampled = std::make_shared<SampledHandle>();
+    world.system.add(tool::make_coupling_term(out.block_id, spec,
+                                              [handle = out.sampled](double t) { return handle->at(t); }));
+    return out;
+  }
   if (own_device && hand.device->type == "hand")
     out.hand = assemble_hand(world, hand, out.block_id, tool_spec);
   else
@@ -138,8 +145,9 @@ ToolInstance assemble_tool(World& world, const scene::Hand& hand, std::unique_pt
   device::WrenchLimiter limiter(figures.max_force, figures.max_torque, figures.ramp, figures.max_force_slew,
                                 figures.max_torque_slew);
   limiter.confine(figures.workspace, *device);
-  const bool ticks = d.exchange.scheme == "partitioned";
-  device::Motors motors = ticks ? device::Motors(device::motor_figures(spec)) : device::Motors();
+  // The monolithic scheme knows the handle's path in advance, and its hand is not sampled.
+  const bool sampled = d.exchange.scheme != scene::ExchangeScheme::kMonolithic;
+  device::Motors motors = sampled ? device::Motors(device::motor_figures(spec)) : device::Motors();
   device->bound(pose_bounds(world, figures.workspace));
   const auto instance = [&](auto scheme) {
     return ToolInstance{.name = hand.name,
@@ -150,10 +158,7 @@ ToolInstance assemble_tool(World& world, const scene::Hand& hand, std::unique_pt
                         .scheme = std::move(scheme),
                         .motors = std::move(motors)};
   };
-  if (d.exchange.scheme == "monolithic") return instance(assemble_block(world, hand, *device, own_device));
-  if (!ticks)
-    fail("exchange: unknown scheme \"{}\"{}", d.exchange.scheme,
-         suggestion(d.exchange.scheme, {"partitioned", "monolithic"}));
+  if (d.exchange.has_tools_in_state()) return instance(assemble_block(world, hand, *device, own_device));
   tool::Tool tool(*hand.tool, d.gravity_m_s2);
   warn_of_limit(hand, tool);
   auto path = std::make_shared<contact::TrajectoryFrame>();

@@ -91,7 +91,7 @@ void BodyLoop::record_tick(std::size_t hand, const TickRecord& tick) {
 
 double BodyLoop::next_query(double t0, double t1) {
   const scene::CosimulationSpec& exchange = world_.description.exchange;
-  if (!world_.contact || exchange.tunnelling != "substep") return t1;
+  if (!world_.contact || exchange.tunnelling != scene::TunnellingPolicy::kSubstep) return t1;
   const double safe = world_.contact->statistics().safe_time, rest = t1 - t0;
   const double requested = std::ceil(rest / safe - 1e-9),
                most = std::max(1.0, std::floor(rest / exchange.shortest_refresh_s + 1e-9));

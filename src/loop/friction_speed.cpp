@@ -62,7 +62,7 @@ double friction_retardation(const scene::Description& d, const ContactSpec& cont
                       (is_body(contact.first) || is_body(contact.second));
   if (!sticks) return 0.0;
   double slowest = d.exchange.contact_refresh_s;
-  if (d.exchange.scheme == "partitioned")
+  if (!d.exchange.has_tools_in_state())
     for (const std::string& name : {contact.first, contact.second})
       if (const ToolSpec* tool = scene::tool_named(d, name)) slowest = std::max(slowest, tool->tick_s);
   return slowest;

@@ -13,7 +13,9 @@ HapticLoop::HapticLoop(ToolInstance& tool, const std::vector<ContactSpec>* laws)
 }
 
 HapticLoop::HapticLoop(const scene::Description& description, ToolInstance& tool)
-    : HapticLoop(tool, description.exchange.linearisation == "points" ? &description.contacts : nullptr) {}
+    : HapticLoop(tool, tool.partitioned() && description.exchange.linearisation == "points"
+                           ? &description.contacts
+                           : nullptr) {}
 
 HapticLoop::~HapticLoop() {
   try {
@@ -126,11 +128,17 @@ bool HapticLoop::hand_in_state() const {
   return tool && tool->hand;
 }
 
+void HapticLoop::begin_step(double t0, double t1) {
+  next_ = tool_.device->sample(t1);
+  tool_.monolithic()->sampled->set(t0, handle_, t1, *next_);
+}
+
 void HapticLoop::render_force(TickRecord& tick) {
   if (hand_in_state())
     handle_ = {tick.handle, tick.handle_twist, {}, true, tick.switches};
   else
-    handle_ = tool_.device->sample(tick.time);
+    handle_ = next_ ? *next_ : tool_.device->sample(tick.time);
+  next_.reset();
   send_wrench(tick);
 }
 

@@ -45,8 +45,11 @@ class HapticLoop {
   void ramp_in() { ramps_in_ = true; }
   /// Advances the tool by h to t under coupling and that contact, and sends the wrench to the device.
   dynamics::StepResult tick(double t, double h, const dynamics::LinearisedContact& contact, TickRecord& out);
+  /// Begins a step of tools and bodies as one system, from t0 to t1: samples the handle at t1, and passes its
+  /// motion to the coupling in the State. @pre the scheme is single-rate
+  void begin_step(double t0, double t1);
   /// Computes the wrench on the hand at the time and tool of `tick` and sends it to the device; a hand in the
-  /// State is read from `tick`.
+  /// State is read from `tick`, a device sampled unless begin_step() did so.
   void render_force(TickRecord& tick);
   /// Sets the wrench on the hand to zero.
   void end();

@@ -2,6 +2,7 @@
 #include "contact/methods.h"
 #include "loop/registries.h"
 #include "palpate/contact/obstacle.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/device/device.h"
 #include "palpate/device/motions.h"
 #include "palpate/device/profile.h"
@@ -103,12 +104,19 @@ scene::Kinds make_kinds() {
   out.push_back(
       {.table = "exchange",
        .selector = "scheme",
-       .kinds = {{"partitioned", part_keys({"linearisation", "linearisation_error"})}, {"monolithic"}},
-       .default_kind = [](const Description&) { return scene::CosimulationSpec{}.scheme; }});
+       .kinds = {{"partitioned", part_keys({"linearisation", "linearisation_error", "exchange_period_s",
+                                            "contact_refresh_s", "latency_ticks"})},
+                 {"monolithic", part_keys({"exchange_period_s", "contact_refresh_s"})},
+                 {"single_rate"}},
+       .default_kind = [](const Description&) {
+         return std::string(name_of(scene::CosimulationSpec{}.scheme));
+       }});
   out.push_back({.table = "exchange",
                  .selector = "tunnelling",
                  .kinds = {{"report"}, {"substep", part_keys({"shortest_refresh_s"})}},
-                 .default_kind = [](const Description&) { return scene::CosimulationSpec{}.tunnelling; }});
+                 .default_kind = [](const Description&) {
+                   return std::string(name_of(scene::CosimulationSpec{}.tunnelling));
+                 }});
   for (const std::string prefix : {"", "hand."}) add_hand(prefix, out);
   return out;
 }

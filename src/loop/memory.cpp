@@ -44,7 +44,7 @@ int contacts_by_points(const scene::Description& d, std::size_t body) {
 /// Returns whether a tool exchanges contact linearised at points with bodies; it then has a matrix and a
 /// solver in addition to the integrator's.
 bool touches_at_points(const scene::Description& d) {
-  return d.tool && d.exchange.scheme == "partitioned" && d.exchange.linearisation == "points";
+  return d.tool && !d.exchange.has_tools_in_state() && d.exchange.linearisation == "points";
 }
 
 }  // namespace

@@ -10,7 +10,9 @@ namespace {
 /// numbers.
 constexpr double kSameTick = 1e-6;
 
-TickRecord tick_of(const World& world, const ToolInstance& tool, double t, const dynamics::StateView& state) {
+}  // namespace
+
+TickRecord tick_at(const World& world, const ToolInstance& tool, double t, const dynamics::StateView& state) {
   const MonolithicTool& of_tool = *tool.monolithic();
   const dynamics::RigidMotion motion = of_tool.motion(state);
   TickRecord tick;
@@ -26,8 +28,6 @@ TickRecord tick_of(const World& world, const ToolInstance& tool, double t, const
   if (tool.frame >= 0) tick.contact = world.contact->frame_wrench(state, tool.frame);
   return tick;
 }
-
-}  // namespace
 
 MonolithicTicks::MonolithicTicks(World& world, Emit emit)
     : world_(world), emit_(std::move(emit)), tick_s_(world.description.tool->tick_s) {
@@ -66,7 +66,7 @@ void MonolithicTicks::stepped(const dynamics::Stepper& stepper, double t0, doubl
 
 void MonolithicTicks::emit_at(double t, const dynamics::StateView& state) {
   ++count_;
-  for (std::size_t i = 0; i < world_.tools.size(); ++i) emit_(i, tick_of(world_, world_.tools[i], t, state));
+  for (std::size_t i = 0; i < world_.tools.size(); ++i) emit_(i, tick_at(world_, world_.tools[i], t, state));
 }
 
 }  // namespace palpate::loop

@@ -6,6 +6,9 @@
 
 namespace palpate::loop {
 
+/// Returns the record of a tick of a tool in the State: its motion, contact, and the hand in the State.
+TickRecord tick_at(const World& world, const ToolInstance& tool, double t, const dynamics::StateView& state);
+
 /// Haptic ticks of a monolithic scene. The integrator chooses its steps, and the tools at the ticks (with the
 /// first tool's tick length) are read from its dense output. An integrator without step reports stops at
 /// every tick instead.

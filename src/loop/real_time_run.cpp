@@ -91,7 +91,10 @@ class RealTime {
   RealTime& operator=(const RealTime&) = delete;
 
   void run() {
-    if (!await_devices()) return;
+    if (!await_devices(world_, options_)) {
+      result_.stopped = true;
+      return;
+    }
     for (Hand& hand : hands_) hand.haptic_loop.start(0.0);
     bodies_.restart_path();
     bodies_.start();
@@ -123,19 +126,6 @@ class RealTime {
   }
 
  private:
-  /// Returns false if the run was stopped before it began.
-  bool await_devices() {
-    for (ToolInstance& tool : world_.tools) {
-      tool.device->open();
-      const std::string awaited = tool.device->awaited();
-      if (awaited.empty()) continue;
-      if (options_.waiting) options_.waiting(awaited);
-      tool.device->await(0.0, options_.stop);
-      if (stop_requested()) return false;
-    }
-    return true;
-  }
-
   // --- Tick thread: it allocates no memory, and waits only for the clock
 
   void tick_to_the_end() {
@@ -313,6 +303,18 @@ class RealTime {
 };
 
 }  // namespace
+
+bool await_devices(World& world, const RunOptions& options) {
+  for (ToolInstance& tool : world.tools) {
+    tool.device->open();
+    const std::string awaited = tool.device->awaited();
+    if (awaited.empty()) continue;
+    if (options.waiting) options.waiting(awaited);
+    tool.device->await(0.0, options.stop);
+    if (options.stop && options.stop->load()) return false;
+  }
+  return true;
+}
 
 void run_in_real_time(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result) {
   check_clock(world, true);

@@ -81,4 +81,16 @@ void claim_real_time(RealTimeResult& out) {
 
 void release_memory() { munlockall(); }
 
+RealTimeClaim::RealTimeClaim(RealTimeResult& out) {
+  pthread_getaffinity_np(pthread_self(), sizeof processors_, &processors_);
+  pthread_getschedparam(pthread_self(), &policy_, &parameters_);
+  claim_real_time(out);
+}
+
+RealTimeClaim::~RealTimeClaim() {
+  pthread_setschedparam(pthread_self(), policy_, &parameters_);
+  pthread_setaffinity_np(pthread_self(), sizeof processors_, &processors_);
+  release_memory();
+}
+
 }  // namespace palpate::loop

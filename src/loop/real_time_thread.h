@@ -1,4 +1,6 @@
 #pragma once
+#include <sched.h>
+
 #include <cstdint>
 
 #include "palpate/loop/real_time.h"
@@ -16,5 +18,20 @@ void sleep_until_ns(std::int64_t due);
 void claim_real_time(RealTimeResult& out);
 /// Unlocks the memory of the process.
 void release_memory();
+
+/// Prepares the calling thread as claim_real_time(), until its end: then scheduling and processors of the
+/// thread are as before, and memory is unlocked.
+class RealTimeClaim {
+ public:
+  explicit RealTimeClaim(RealTimeResult& out);
+  ~RealTimeClaim();
+  RealTimeClaim(const RealTimeClaim&) = delete;
+  RealTimeClaim& operator=(const RealTimeClaim&) = delete;
+
+ private:
+  cpu_set_t processors_{};
+  sched_param parameters_{};
+  int policy_ = 0;
+};
 
 }  // namespace palpate::loop

@@ -115,10 +115,11 @@ scene::Description tools_alone(const scene::Description& d, const std::vector<st
 }
 
 void refuse_what_cannot_be_retraced(const scene::Description& d, const HapticRecord& record) {
-  if (!d.tool || d.exchange.scheme == "monolithic")
+  if (!d.tool || d.exchange.has_tools_in_state())
     fail(
-        "replay: this run has no exchanges to replay (it is monolithic, or has no tool); change a setting "
-        "(--set) to simulate it again");
+        "replay: this run has no exchanges to replay (tool and bodies are one system, or there is no tool); "
+        "change "
+        "a setting (--set) to simulate it again");
   for (std::size_t i = 0; i < record.ticks.size(); ++i) {
     const double start = i == 0 ? 0.0 : record.ticks[i - 1].time;
     if (std::abs(record.ticks[i].time - start - record.ticks[i].length) > kSameTime)

@@ -4,6 +4,7 @@
 #include "core/clock.h"
 #include "palpate/core/workers.h"
 #include "real_time_run.h"
+#include "single_rate_real_time.h"
 #include "virtual_time.h"
 
 namespace palpate::loop {
@@ -13,7 +14,9 @@ RunResult run(World& world, const RunOptions& options) {
   RunResult result;
   BodyLoop bodies(world, options, result);
   const double wall = wall_seconds(), cpu = cpu_seconds();
-  if (options.real_time)
+  if (options.real_time && world.description.exchange.scheme == scene::ExchangeScheme::kSingleRate)
+    run_single_rate_in_real_time(world, bodies, options, result);
+  else if (options.real_time)
     run_in_real_time(world, bodies, options, result);
   else
     run_in_virtual_time(world, bodies, options, result);

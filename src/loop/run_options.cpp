@@ -7,7 +7,8 @@
 namespace palpate::loop {
 
 double period_of(const scene::Description& d) {
-  if (d.tool && d.exchange.scheme != "monolithic") return d.exchange.exchange_period_s;
+  if (d.tool && d.exchange.scheme == scene::ExchangeScheme::kPartitioned) return d.exchange.exchange_period_s;
+  if (d.tool && d.exchange.scheme == scene::ExchangeScheme::kSingleRate) return d.tool->tick_s;
   if (!d.contacts.empty()) return d.exchange.contact_refresh_s;
   return d.record ? d.record->state_period_s : d.duration_s;
 }
@@ -24,8 +25,11 @@ void check_clock(const World& world, bool real_time) {
     return;
   }
   if (!d.tool) fail("real time: the scene has no [tool], so there is no force for a hand to feel");
-  if (!world.has_tool_of_ticks())
-    fail("real time: exchange.scheme = \"monolithic\" has no separate haptic loop; use \"partitioned\"");
+  if (d.exchange.scheme == scene::ExchangeScheme::kMonolithic)
+    fail(
+        "real time: exchange.scheme = \"monolithic\" needs the handle's path in advance; use \"partitioned\" "
+        "or "
+        "\"single_rate\"");
   for (const scene::HandSpec& hand : d.hands)
     if (hand.tool.tick_s != d.tool->tick_s)
       fail(

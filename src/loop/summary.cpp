@@ -9,6 +9,7 @@
 #include "core/clock.h"
 #include "core/counters.h"
 #include "loop/penetration.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/device/profile.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
@@ -55,14 +56,14 @@ void add_options(store::SummarySection& s, const scene::Description& d) {
   s.values.emplace_back("linear_solver", integrate::linear_solver_of(d.integrator));
   s.values.emplace_back("threads", static_cast<long long>(d.integrator.threads));
   if (!d.tool) return;
-  const bool monolithic = d.exchange.scheme == "monolithic";
-  s.values.emplace_back("exchange_scheme", d.exchange.scheme);
+  const bool in_state = d.exchange.has_tools_in_state();
+  s.values.emplace_back("exchange_scheme", std::string(name_of(d.exchange.scheme)));
   s.values.emplace_back("contact_refresh_s", d.exchange.contact_refresh_s);
-  if (!monolithic) {
+  if (!in_state) {
     s.values.emplace_back("exchange_period_s", d.exchange.exchange_period_s);
     s.values.emplace_back("linearisation", d.exchange.linearisation);
   }
-  s.values.emplace_back("tool_integrator", monolithic ? d.integrator.name : d.tool->integrator);
+  s.values.emplace_back("tool_integrator", in_state ? d.integrator.name : d.tool->integrator);
 }
 
 /// Returns the provenance from store, with the libraries of the other parts.

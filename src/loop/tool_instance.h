@@ -13,6 +13,7 @@
 #include "palpate/device/motors.h"
 #include "palpate/device/passivity.h"
 #include "palpate/tool/tool.h"
+#include "sampled_handle.h"
 #include "tool/hand_block.h"
 
 // Poses of a tool. Each is stored once:
@@ -23,7 +24,7 @@
 //                                 one is World::tool_pose() and, until the next ticks, that of the next
 //                                 exchange
 //   MonolithicTool::block_id      in the State, at the State's time: World::tool_pose() of the monolithic
-//                                 scheme
+//                                 and the single-rate scheme
 //   TickRecord::tool              at the end of one tick, in transit from the ticks to path and files
 //   LinearisedContact::x0, ReducedContactModel::tool
 //                                 pose of an exchange, in transit from the bodies to the ticks and files
@@ -49,7 +50,7 @@ struct PartitionedTool {
   StepFactor step_factor = {};                     ///< For linearisation = "condensed".
 };
 
-/// Tool of the monolithic scheme: a block of the State.
+/// Tool of the monolithic and of the single-rate scheme: a block of the State.
 struct MonolithicTool {
   /// Simulated hand that holds the device, as a block of the State.
   struct Hand {
@@ -58,7 +59,10 @@ struct MonolithicTool {
     device::HandModel model;
   };
   int block_id;
-  std::optional<Hand> hand = {};  ///< Replaces the device where the scene simulates the hand.
+  /// Replaces the device where the scene simulates the hand; monolithic scheme only.
+  std::optional<Hand> hand = {};
+  /// Handle that the coupling follows; single-rate scheme only, else null.
+  std::shared_ptr<SampledHandle> sampled = {};
 
   /// Returns the tool's pose and twist at a state.
   dynamics::RigidMotion motion(const dynamics::StateView& state) const {

@@ -28,6 +28,12 @@ void VirtualTime::make_hands() {
     groups_ = TickGroup::all(hands_);
     return;
   }
+  if (d.exchange.scheme == scene::ExchangeScheme::kSingleRate) {
+    std::vector<HapticLoop*> loops;
+    for (Hand& hand : hands_) loops.push_back(&hand.haptic_loop);
+    single_.emplace(world_, bodies_, result_, std::move(loops));
+    return;
+  }
   dense_.emplace(world_, [this](std::size_t hand, TickRecord tick) {
     hands_[hand].haptic_loop.render_force(tick);
     bodies_.record_tick(hand, tick);
@@ -51,6 +57,7 @@ void VirtualTime::end() {
 
 void VirtualTime::one_period(double t0, double t1) {
   bodies_.query();
+  if (single_) return single_->tick(t0, t1);
   // Ticks use the contact found before them, so they stop where the next query is due.
   for (double t = t0, next;; t = next) {
     const bool exchanged = world_.has_tool_of_ticks();

@@ -4,6 +4,7 @@
 
 #include "body_loop.h"
 #include "loop/contact_record.h"
+#include "single_rate.h"
 #include "tick_group.h"
 
 namespace palpate::loop {
@@ -54,6 +55,7 @@ class VirtualTime {
   std::deque<Hand> hands_;
   std::vector<TickGroup> groups_;         ///< Groups of hands_.
   std::optional<MonolithicTicks> dense_;  ///< Monolithic scheme only.
+  std::optional<SingleRate> single_;      ///< Single-rate scheme only.
 };
 
 /// Runs both sides to the end in virtual time.

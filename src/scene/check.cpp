@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "palpate/core/named_enum.h"
 #include "palpate/scene/hands.h"
 #include "scene/reader.h"
 
@@ -112,7 +113,7 @@ void check_changes(const Document& doc, const Description& d) {
   for (std::size_t i = 0; i < d.bodies.size(); ++i) {
     const std::string where = fmt::format("body \"{}\": change", d.bodies[i].name);
     for (std::size_t j = 0; j < d.bodies[i].changes.size(); ++j) {
-      const double time = d.bodies[i].changes[j].time_s, period = d.exchange.scheme == "monolithic"
+      const double time = d.bodies[i].changes[j].time_s, period = d.exchange.has_tools_in_state()
                                                                       ? d.exchange.contact_refresh_s
                                                                       : d.exchange.exchange_period_s;
       const std::string key = at("body", i, at("change", j, "time_s"));
@@ -135,7 +136,7 @@ void check_changes(const Document& doc, const Description& d) {
         refuse(location(doc, key), where,
                fmt::format("time_s = {} must be a whole number of {} of {} s: between them the tool uses a "
                            "model of the body made before the change",
-                           time, d.exchange.scheme == "monolithic" ? "contact refreshes" : "exchange periods",
+                           time, d.exchange.has_tools_in_state() ? "contact refreshes" : "exchange periods",
                            period));
     }
   }
@@ -155,7 +156,7 @@ void check_periods(const Document& doc, const Description& d) {
   const CosimulationSpec& c = d.exchange;
   const bool own = given(doc, "exchange.exchange_period_s");
   const double compared = d.compare.duration_s > 0.0 ? d.compare.duration_s : d.duration_s;
-  if (c.scheme != "monolithic") {
+  if (!c.has_tools_in_state()) {
     for (const Hand& hand : hands_of(d)) {
       const std::string tick = hand.tool_key + ".tick_s";
       check_period(doc, own ? "exchange.exchange_period_s" : tick, "exchange", c.exchange_period_s,
@@ -177,7 +178,7 @@ constexpr double kLongestLatency = 10.0;  // periods
 void check_latency(const Document& doc, const Description& d) {
   const CosimulationSpec& c = d.exchange;
   const std::string key = location(doc, "exchange.latency_ticks");
-  if (!d.tool || c.scheme == "monolithic")
+  if (!d.tool || c.has_tools_in_state())
     refuse(key, "exchange",
            "latency_ticks applies only to a tool that steps separately: scheme = \"partitioned\" and [tool]");
   if (const double longest = kLongestLatency * c.exchange_period_s / d.tool->tick_s;
@@ -190,21 +191,23 @@ void check_latency(const Document& doc, const Description& d) {
 void check_exchange(const Document& doc, Description& d) {
   CosimulationSpec& c = d.exchange;
   if (!given(doc, "exchange.contact_refresh_s")) c.contact_refresh_s = c.exchange_period_s;
+  if (c.scheme == ExchangeScheme::kSingleRate && d.tool) c.contact_refresh_s = d.tool->tick_s;
   if (d.tool)
     check_periods(doc, d);
-  else if (c.scheme == "monolithic")
+  else if (c.has_tools_in_state())
     refuse(location(doc, "exchange.scheme"), "exchange",
-           "scheme = \"monolithic\" needs a tool: there is nothing to couple without one");
+           fmt::format("scheme = \"{}\" needs a tool: there is nothing to couple without one",
+                       name_of(c.scheme)));
   else if (!d.compare.exchange_periods_s.empty())
     refuse(location(doc, "compare.exchange_periods_s"), "compare",
            "exchange_periods_s needs a tool: nothing is exchanged without one");
   if (c.latency_ticks > 0) check_latency(doc, d);
-  if (c.tunnelling == "substep" && !(c.shortest_refresh_s < c.contact_refresh_s))
+  if (c.tunnelling == TunnellingPolicy::kSubstep && !(c.shortest_refresh_s < c.contact_refresh_s))
     refuse(location(doc, "exchange.shortest_refresh_s"), "exchange",
            fmt::format("shortest_refresh_s = {} must be less than contact_refresh_s = {}: otherwise "
                        "\"substep\" has no effect",
                        c.shortest_refresh_s, c.contact_refresh_s));
-  if (c.scheme == "monolithic") return;  // Contact has an independent refresh period.
+  if (c.has_tools_in_state()) return;  // Contact has an independent refresh period, or the tick.
   if (!is_multiple(c.exchange_period_s, c.contact_refresh_s))
     refuse(location(doc, "exchange.contact_refresh_s"), "exchange",
            fmt::format("contact_refresh_s = {} must divide exchange_period_s = {} evenly; use {:.9g}",

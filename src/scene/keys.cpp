@@ -140,8 +140,9 @@ const KeyTable<HandSpec>& hand_keys() {
 
 const KeyTable<CosimulationSpec>& exchange_keys() {
   static const KeyTable<CosimulationSpec> keys = {
-      text("scheme", &CosimulationSpec::scheme, {"partitioned", "monolithic"},
-           "step tool and bodies separately and exchange forces, or advance both by one integrator"),
+      option("scheme", &CosimulationSpec::scheme,
+             "step tool and bodies separately and exchange forces, advance both by one integrator, or do so "
+             "once per tick with a sampled handle"),
       text("linearisation", &CosimulationSpec::linearisation, {"points", "condensed", "frozen"},
            "contact model between exchanges: contact points with the bodies' response, or a linear force "
            "model"),
@@ -153,8 +154,8 @@ const KeyTable<CosimulationSpec>& exchange_keys() {
       unless("exchange_period_s",
              number("contact_refresh_s", &CosimulationSpec::contact_refresh_s, positive(),
                     "time between searches for contact; the exchange period divided by a whole number")),
-      text("tunnelling", &CosimulationSpec::tunnelling, {"report", "substep"},
-           "bodies that may pass through each other between two refreshes: report them, or refresh sooner"),
+      option("tunnelling", &CosimulationSpec::tunnelling,
+             "bodies that may pass through each other between two refreshes: report them, or refresh sooner"),
       number("shortest_refresh_s", &CosimulationSpec::shortest_refresh_s, positive(),
              "shortest time between two refreshes for \"substep\""),
       integer(

@@ -88,7 +88,7 @@ void add_body_needs(const Description& d, const std::string& linear_solver, std:
 /// Returns whether a tool that is advanced by ticks carries nodes.
 bool tools_carry(const Description& d) {
   const auto by_tool = [&](const AttachmentSpec& a) { return tool_named(d, a.to) != nullptr; };
-  return d.exchange.scheme != "monolithic" &&
+  return !d.exchange.has_tools_in_state() &&
          count_if(d.bodies, [&](const auto& body) { return count_if(body.attachments, by_tool) > 0; }) > 0;
 }
 
@@ -125,36 +125,37 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
   const bool tool = d.tool.has_value();
   out.push_back({"tool", tool,
                  tool ? fmt::format("[tool], {} under a virtual coupling, {}", name_of(d.tool->shape),
-                                    d.exchange.scheme)
+                                    name_of(d.exchange.scheme))
                       : "no [tool]"});
   out.push_back({"device", d.device.has_value(),
                  d.device ? fmt::format("[device], type \"{}\"", d.device->type) : "no [device]"});
   const std::size_t more = d.hands.size();
   out.push_back({"more hands", more > 0, more > 0 ? fmt::format("{} [[hand]]", more) : "no [[hand]]"});
-  const bool monolithic = tool && d.exchange.scheme == "monolithic",
-             two_rates = tool && !monolithic && !d.bodies.empty();
-  const std::string one_system = "scheme \"monolithic\": one integrator advances tool and bodies";
+  const bool in_state = tool && d.exchange.has_tools_in_state(),
+             two_rates = tool && !in_state && !d.bodies.empty();
+  const std::string one_system =
+      fmt::format("scheme \"{}\": one integrator advances tool and bodies", name_of(d.exchange.scheme));
   out.push_back({"exchange", two_rates,
-                 two_rates    ? fmt::format("tool ticks every {} s, exchange every {} s", d.tool->tick_s,
-                                            d.exchange.exchange_period_s)
-                 : monolithic ? one_system
-                              : "one rate only"});
+                 two_rates  ? fmt::format("tool ticks every {} s, exchange every {} s", d.tool->tick_s,
+                                          d.exchange.exchange_period_s)
+                 : in_state ? one_system
+                            : "one rate only"});
   const bool touched = tools_carry(d) || count_if(d.contacts, [&](const auto& c) {
                                            return tool_named(d, c.second) && !tool_named(d, c.first);
                                          }) > 0;
   const bool points = two_rates && touched && d.exchange.linearisation == "points";
   out.push_back({"contact points", points,
-                 points       ? "linearisation \"points\": bodies are reduced to their contact with the tool"
-                 : monolithic ? one_system
-                 : !touched   ? "no contact of a soft body with a tool"
-                              : fmt::format("linearisation \"{}\"", d.exchange.linearisation)});
+                 points     ? "linearisation \"points\": bodies are reduced to their contact with the tool"
+                 : in_state ? one_system
+                 : !touched ? "no contact of a soft body with a tool"
+                            : fmt::format("linearisation \"{}\"", d.exchange.linearisation)});
   const bool condensed = two_rates && touched && d.exchange.linearisation == "condensed";
   out.push_back({"condenser", condensed,
                  condensed
                      ? "linearisation \"condensed\": the bodies' step matrix is factored once per exchange"
-                 : monolithic ? one_system
-                 : !touched   ? "no contact of a soft body with a tool"
-                              : fmt::format("linearisation \"{}\"", d.exchange.linearisation)});
+                 : in_state ? one_system
+                 : !touched ? "no contact of a soft body with a tool"
+                            : fmt::format("linearisation \"{}\"", d.exchange.linearisation)});
   const std::vector<Hand> hands = hands_of(d);
   const auto grasps =
       std::find_if(hands.begin(), hands.end(), [](const Hand& h) { return h.tool->grasp_switch >= 0; });

@@ -176,7 +176,7 @@ TEST(ZWidth, estimates_contacts_from_the_scene) {
   EXPECT_THROW(contact_range(d), Error);
   d.contacts.clear();
   EXPECT_THROW(contact_range(d), Error);
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   EXPECT_THROW(loop_of(d), Error);
   d.tool.reset();
   EXPECT_THROW(loop_of(d), Error);

@@ -204,7 +204,7 @@ TEST(Bones, NodesThatNoBoneHoldsAreRefused) {
 TEST(Bones, TheToolOfAMonolithicSceneCarriesNodes) {
   scene::Description d = pressed_block(0.0);
   d.contacts.clear();
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   d.bodies[0].attachments[0].to = "tool";
   d.bodies[0].attachments[0].box_min_m = Vec3(-1, -1, 0.019);
   d.bodies[0].attachments[0].box_max_m = Vec3(1, 1, 0.021);

@@ -97,7 +97,7 @@ Cases make_cases() {
   Case& exact = out["ExactHand"] = pressed("points");
   exact.scene.device->type = "hand";
   Case& one = out["Monolithic"] = pressed("points");
-  one.scene.exchange.scheme = "monolithic";
+  one.scene.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   one.scene.exchange.exchange_period_s = one.scene.exchange.contact_refresh_s = 0.002;
   one.scene.integrator.step_s = 0.001;
 #ifdef PALPATE_HAS_GL

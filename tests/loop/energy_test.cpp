@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "palpate/core/named_enum.h"
 #include "palpate/loop/run.h"
 #include "small_scenes.h"
 
@@ -154,7 +155,7 @@ scene::Description pressed_and_let_go(const char* scheme) {
   KeyframeSpec up = d.device->keyframes[0];
   up.time_s = 0.1;
   d.device->keyframes = {d.device->keyframes[0], pressed, up};
-  d.exchange.scheme = scheme;
+  d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 1e-3;
   d.integrator.name = "cvode-bdf";
   d.integrator.rtol = 1e-7;
@@ -193,7 +194,7 @@ TEST(EnergyLedger, NamesTheToolsParts) {
     const double aside = 0.002, mass = d.tool->mass_kg, k = d.tool->coupling.stiffness_n_m,
                  b = d.tool->coupling.damping_n_s_m;
     d.device->keyframes[0].position_m.x() += aside;
-    d.exchange.scheme = scheme;
+    d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
     d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 1e-3;
     d.tool->tick_s = 1e-4;
     d.integrator.name = "cvode-bdf";

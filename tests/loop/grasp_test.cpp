@@ -11,6 +11,7 @@
 #include "loop/ticks_of.h"
 #include "loop/tool_instance.h"
 #include "palpate/contact/contact_force.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/loop/run.h"
 #include "palpate/tool/tool.h"
 
@@ -53,7 +54,7 @@ TEST(Grasp, WhatHangsHasItsWeight) {
   for (const char* linearisation : {"points", "condensed", "frozen", "monolithic"}) {
     scene::Description d = hanging_block();
     if (linearisation == std::string("monolithic"))
-      d.exchange.scheme = linearisation;
+      d.exchange.scheme = *value_named<scene::ExchangeScheme>(linearisation);
     else
       d.exchange.linearisation = linearisation;
     const auto world = loop::assemble(d);
@@ -140,7 +141,7 @@ Errors between(const std::vector<loop::TickRecord>& a, const std::vector<loop::T
 // The force agrees with the monolithic solution of tool and block; the error of the exchange is small.
 TEST(Grasp, IsNearToOneSystem) {
   scene::Description one = pulled_block();
-  one.exchange.scheme = "monolithic";
+  one.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   const auto reference = ticks_of(one);
   EXPECT_GT(pull(reference), 0.3);
   for (const char* linearisation : {"points", "condensed"}) {

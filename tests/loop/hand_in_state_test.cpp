@@ -29,7 +29,7 @@ scene::Description yielding() {
 }
 
 scene::Description as_one(scene::Description d, double refresh_s = 5e-4) {
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = refresh_s;
   return d;
 }
@@ -67,7 +67,7 @@ void expect_order_one(double friction_n) {
   d.bodies.clear();
   d.contacts.clear();
   scene::Description one = d;
-  one.exchange.scheme = "monolithic";
+  one.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   one.integrator.rtol = 1e-10;
   one.tool->tick_s = 1e-3;
   const auto truth = ticks_of(one);

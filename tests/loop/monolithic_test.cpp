@@ -19,7 +19,7 @@ namespace {
 /// The handle moves from first touch to `depth` below it and rests there; tool and block form one system.
 scene::Description monolithic_press(double depth) {
   scene::Description d = pressed_block(0.0);
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   KeyframeSpec end = d.device->keyframes.front();
   end.time_s = 0.03;
   end.position_m.z() -= depth;
@@ -67,7 +67,7 @@ TEST(Monolithic, NothingIsExchangedAndNothingCondensed) {
   EXPECT_EQ(out.result.tool_s, 0.0);
   counters::reset();
   scene::Description partitioned = monolithic_press(0.002);
-  partitioned.exchange.scheme = "partitioned";
+  partitioned.exchange.scheme = scene::ExchangeScheme::kPartitioned;
   ASSERT_TRUE(run(partitioned).result.status.ok());
   EXPECT_EQ(counters::counter("loop.exchange_record"), 4) << "the counters count";
   EXPECT_EQ(counters::counter("loop.condenser"), 0) << "iterations answer a block's contact points";
@@ -112,7 +112,8 @@ TEST(Monolithic, LeavesFrictionOutWhereAStepIsOneSolve) {
   for (const bool monolithic : {false, true})
     for (const char* integrator : {"linearly-implicit-euler", "backward-euler"}) {
       scene::Description d = monolithic_press(0.01);
-      d.exchange.scheme = monolithic ? "monolithic" : "partitioned";
+      d.exchange.scheme =
+          monolithic ? scene::ExchangeScheme::kMonolithic : scene::ExchangeScheme::kPartitioned;
       d.integrator.name = integrator;
       d.integrator.step_s = 1e-3;
       d.contacts[0].friction = 0.3;
@@ -179,7 +180,7 @@ TEST(Monolithic, SummaryCountsTheRootsThatStepsWereCutShortAt) {
 TEST(Monolithic, RestsWhereThePartitionedSchemeRests) {
   scene::Description d = monolithic_press(0.003);
   const Outcome whole = run(d, 1.5);
-  d.exchange.scheme = "partitioned";
+  d.exchange.scheme = scene::ExchangeScheme::kPartitioned;
   const Outcome parts = run(d, 1.5);
   ASSERT_TRUE(whole.result.status.ok() && parts.result.status.ok());
   const loop::TickRecord &a = whole.log.ticks.back(), &b = parts.log.ticks.back();
@@ -194,7 +195,7 @@ TEST(Monolithic, RestsWhereThePartitionedSchemeRests) {
 // coupling energy is conserved, while far more than the tolerance is exchanged between tool and block.
 TEST(Monolithic, ToolAndBodiesKeepTheirEnergyTogether) {
   scene::Description d = pressed_block(0.003);
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   d.exchange.contact_refresh_s = 0.002;
   d.record.emplace();
   d.bodies[0].stiffness_damping_s = 0.0;
@@ -224,7 +225,7 @@ TEST(Monolithic, AToolAloneMovesAsInASystemOfItsOwn) {
   d.device->keyframes.back().rotation_vector_rad = Vec3(0.3, 0.5, -0.2);
   d.integrator.rtol = 1e-9;
   const Outcome whole = run(d);
-  d.exchange.scheme = "partitioned";
+  d.exchange.scheme = scene::ExchangeScheme::kPartitioned;
   d.tool->integrator = "simbody-rkmerson";
   const Outcome parts = run(d);
   ASSERT_TRUE(whole.result.status.ok()) << whole.result.status.message;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "loop/small_scenes.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/device/device.h"
 #include "palpate/loop/run.h"
 
@@ -20,7 +21,7 @@ std::vector<double> shares(const std::string& scheme, std::optional<double> ramp
   scene::Description d = small_scenes::pressed_block(0.002);
   d.device->keyframes[0].position_m.z() -= 0.002;  // a coupling that pulls from the start
   d.device->ramp_s = ramp_s;
-  d.exchange.scheme = scheme;
+  d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
   Keep keep;
   loop::RunOptions options;
   options.observers = {&keep};

@@ -136,7 +136,7 @@ std::string refusal(const scene::Description& d, std::vector<loop::Observer*> ob
 TEST(RealTime, RefusesWhatItDoesNotServe) {
   EXPECT_NE(refusal(small_scenes::held_block()).find("no [tool]"), std::string::npos);
   scene::Description d = scene_of();
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   EXPECT_NE(refusal(d).find("use \"partitioned\""), std::string::npos);
 }
 

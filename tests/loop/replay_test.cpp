@@ -221,7 +221,7 @@ TEST(Replay, RetracesAForceThatSetsInAnew) {
 TEST(Replay, AnotherCouplingFollowsTheSameHand) {
   scene::Description d = pressed();
   const loop::HapticRecord record = recorded(d, false, "partitioned.h5");
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   d.integrator.name = "cvode-bdf";
   const loop::HapticRecord truth = recorded(d, false, "monolithic.h5");
   const loop::HapticRecord replayed = recorded(d, false, "replayed.h5", loop::recorded_hand(record));
@@ -252,7 +252,7 @@ TEST(Replay, RefusesWhatItCannotRepeat) {
   empty.ticks.clear();
   EXPECT_NE(refusal(d, empty).find("no ticks"), std::string::npos);
   scene::Description one = d;
-  one.exchange.scheme = "monolithic";
+  one.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   EXPECT_NE(refusal(one, record).find("no exchange"), std::string::npos);
 }
 

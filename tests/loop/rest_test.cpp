@@ -68,7 +68,7 @@ TEST_P(RestingContact, HasTheForceOfTheMonolithicSolution) {
   d.integrator.rtol = 1e-7;  // rtol of error control: the state at rest has that accuracy
   d.exchange.linearisation = c.linearisation;
   scene::Description one = d;
-  one.exchange.scheme = "monolithic";
+  one.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   const Rest truth = at_rest(one), rest = at_rest(d);
   EXPECT_GT(truth.force.norm(), 0.2);
   EXPECT_LE((rest.force - truth.force).norm(), 1e-6 * truth.force.norm());

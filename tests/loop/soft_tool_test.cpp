@@ -8,6 +8,7 @@
 #include "loop/tool_instance.h"
 #include "palpate/contact/contact_force.h"
 #include "palpate/core/error.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/loop/run.h"
 
 namespace {
@@ -40,7 +41,7 @@ TEST(SoftTool, WeighsWhatItWeighs) {
     d.gravity_m_s2 = Vec3(0, 0, -9.81);
     d.bodies[0].mass_damping_per_s = 20.0;  // damped to rest
     if (linearisation == std::string("monolithic"))
-      d.exchange.scheme = linearisation;
+      d.exchange.scheme = *value_named<scene::ExchangeScheme>(linearisation);
     else
       d.exchange.linearisation = linearisation;
     const auto world = loop::assemble(d);
@@ -92,7 +93,7 @@ std::vector<loop::TickRecord> swung(double period) {
 // block's inertia while it swings, and the floor through the block. The difference decreases with the period.
 TEST(SoftTool, FeelsAsOneSystem) {
   scene::Description d = swung_block();
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   d.integrator.name = "implicit-midpoint";
   d.integrator.step_s = d.exchange.contact_refresh_s = 2.5e-4;
   d.exchange.exchange_period_s = d.tool->tick_s = 5e-4;
@@ -134,7 +135,7 @@ TEST(SoftTool, ASecondHandCarriesToo) {
     d.duration_s = 0.5;
     d.gravity_m_s2 = Vec3(0, 0, -9.81);
     d.bodies[0].mass_damping_per_s = 20.0;
-    d.exchange.scheme = scheme;
+    d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
     scene::HandSpec left;
     left.name = "left";
     left.tool = *d.tool;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "loop/small_scenes.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/loop/run.h"
 #include "palpate/loop/world.h"
 
@@ -124,7 +125,7 @@ scene::Description held_by_two(const std::string& scheme) {
     contact.friction = 0.8;
     d.contacts.push_back(contact);
   }
-  d.exchange.scheme = scheme;
+  d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.005;
   d.integrator.name = "linearly-implicit-euler";
   d.integrator.step_s = 0.005;

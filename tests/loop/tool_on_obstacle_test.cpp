@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "palpate/core/error.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/loop/run.h"
 #include "small_scenes.h"
 
@@ -121,7 +122,7 @@ TEST(ToolOnObstacle, AtRestItCarriesItsWeight) {
     for (const char* scheme : {"partitioned", "monolithic"})
       for (const bool mesh : {false, true}) {
         scene::Description d = ball_over(type, 2e-4);
-        d.exchange.scheme = scheme;
+        d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
         if (mesh && std::string(type) != "plane") continue;  // facets do not balance on a round obstacle
         if (mesh) {
           d.tool->shape = ToolShape::kMesh;
@@ -154,7 +155,7 @@ TEST(ToolOnObstacle, AtRestItCarriesItsWeight) {
 TEST(ToolOnObstacle, WithoutDampingItBouncesBackAsFast) {
   scene::Description d = ball_over("plane", 1e-3);
   d.gravity_m_s2.setZero();
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   d.exchange.contact_refresh_s = 1e-3;
   d.contacts[0].hunt_crossley_s_m = 0.0;
   d.contacts[0].stiffness_pa_m = 1e8;
@@ -181,7 +182,7 @@ TEST(ToolOnObstacle, WithoutDampingItBouncesBackAsFast) {
 TEST(ToolOnObstacle, HuntAndCrossleysRestitution) {
   scene::Description d = ball_over("plane", 1e-3);
   d.gravity_m_s2.setZero();
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   d.exchange.contact_refresh_s = 1e-3;
   d.contacts[0].hunt_crossley_s_m = 2.0 / 3.0 / 0.5;
   d.duration_s = 0.02;
@@ -197,7 +198,7 @@ TEST(ToolOnObstacle, TicksTendToOneSystem) {
   d.contacts[0].stiffness_pa_m = 1e7;
   d.duration_s = 0.08;
   scene::Description one = d;
-  one.exchange.scheme = "monolithic";
+  one.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   one.exchange.contact_refresh_s = 1e-3;
   one.integrator.name = "cvode-bdf";
   one.integrator.rtol = 1e-8;
@@ -218,7 +219,7 @@ TEST(ToolOnObstacle, FrictionSlowsAndSpinsASlidingBall) {
   const double depth = std::sqrt(kMass * kG / (1e8 * std::numbers::pi * kR));
   d.tool->position_m.z() = kR - depth;
   d.device->keyframes[0].position_m = d.tool->position_m;
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   d.exchange.contact_refresh_s = 1e-3;
   d.contacts[0].friction = 0.3;
   d.integrator.step_s = 1e-4;
@@ -233,7 +234,7 @@ TEST(ToolOnObstacle, FrictionSlowsAndSpinsASlidingBall) {
 TEST(ToolOnObstacle, WhatComesWithinAPeriodIsLookedAheadFor) {
   for (const char* scheme : {"partitioned", "monolithic"}) {
     scene::Description d = ball_over("plane", 0.06);  // 1 cm apart at the last query before contact
-    d.exchange.scheme = scheme;
+    d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
     d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.02;
     d.contacts[0].hunt_crossley_s_m = 3.0;
     d.duration_s = 0.3;
@@ -251,7 +252,7 @@ namespace {
 /// The block between the tool and a floor, with a post that stops the tool.
 scene::Description squeezed(const char* scheme, const char* linearisation) {
   scene::Description d = small_scenes::pressed_block(0.002);
-  d.exchange.scheme = scheme;
+  d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
   d.exchange.linearisation = linearisation;
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 5e-3;
   ContactSpec law;
@@ -339,7 +340,7 @@ TEST(ToolOnObstacle, AThinPlateIsNotMissedWithSubSteps) {
     d.contacts[0].stiffness_pa_m = 1e10;
     d.tool->tick_s = d.exchange.exchange_period_s;
     d.duration_s = 0.03;
-    if (substep) d.exchange.tunnelling = "substep";
+    if (substep) d.exchange.tunnelling = scene::TunnellingPolicy::kSubstep;
     loop::RunResult result;
     const auto ticks = run(d, Vec3::Zero(), &result);
     EXPECT_EQ(result.tunnelled, std::vector<long>{substep ? 0 : 1});

@@ -9,6 +9,7 @@
 #include "loop/haptic_record.h"
 #include "loop/replay.h"
 #include "palpate/core/error.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/run.h"
 #include "small_scenes.h"
@@ -83,7 +84,7 @@ TEST(ToolsMeet, AtRestTheyCarryEachOther) {
     for (const char* second : {"sphere", "box"})
       for (const char* scheme : {"partitioned", "monolithic"}) {
         scene::Description d = pressed(first, second);
-        d.exchange.scheme = scheme;
+        d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
         d.contacts[0].quadrature_error = 1e-3;
         HandsFelt both;
         run(d, both);
@@ -197,7 +198,7 @@ TEST(ToolsMeet, TicksConvergeToTheMonolithicSystem) {
   d.device->keyframes[1].time_s = 0.02;
   d.duration_s = 0.06;
   scene::Description one = d;
-  one.exchange.scheme = "monolithic";
+  one.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   one.integrator.name = "cvode-bdf";
   one.integrator.rtol = 1e-8;
   HandsFelt reference;
@@ -258,7 +259,8 @@ TEST(ToolsMeet, BesideASoftBody) {
   d.duration_s = 1.0;
   std::vector<HandsFelt> both(2);
   for (const bool partitioned : {true, false}) {
-    d.exchange.scheme = partitioned ? "partitioned" : "monolithic";
+    d.exchange.scheme =
+        partitioned ? scene::ExchangeScheme::kPartitioned : scene::ExchangeScheme::kMonolithic;
     run(d, both[partitioned ? 0 : 1]);
   }
   for (const int hand : {0, 1}) {
@@ -276,7 +278,7 @@ TEST(ToolsMeet, BesideASoftBody) {
 
 TEST(ToolsMeet, KeepTheBalanceOfEnergy) {
   scene::Description d = pressed("sphere", "box");
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   d.integrator.name = "cvode-bdf";
   d.integrator.rtol = 1e-8;
   d.contacts[0].friction = 0.3;

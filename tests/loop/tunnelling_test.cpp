@@ -141,7 +141,7 @@ TEST(Tunnelling, WhatGoesThroughABodyIsReported) {
 // momentum is reversed at any speed, with the minimum of additional queries.
 TEST(Tunnelling, SubStepsTurnItRound) {
   for_each_target([](scene::Description d, double speed) {
-    d.exchange.tunnelling = "substep";
+    d.exchange.tunnelling = scene::TunnellingPolicy::kSubstep;
     d.exchange.shortest_refresh_s = 1e-6;
     Ran ran = run(d);
     EXPECT_EQ(ran.result.tunnelled, std::vector<long>{0});
@@ -160,13 +160,13 @@ TEST(Tunnelling, SubStepsTurnItRound) {
 // it as often as needed.
 TEST(Tunnelling, SubStepsInRealTime) {
   scene::Description d = at_tool(10.0);
-  d.exchange.tunnelling = "substep";
+  d.exchange.tunnelling = scene::TunnellingPolicy::kSubstep;
   d.exchange.shortest_refresh_s = 1e-6;
   const Ran ran = run(d, true);
   EXPECT_EQ(ran.result.tunnelled, std::vector<long>{0});
   EXPECT_GT(ran.velocity, 0.0);
   EXPECT_GT(ran.result.sub_steps, 0);
-  d.exchange.tunnelling = "report";
+  d.exchange.tunnelling = scene::TunnellingPolicy::kReport;
   d.duration_s = 0.011;
   EXPECT_GT(run(d).result.tunnelled[0], 0) << "what a step without them does";
 }
@@ -176,7 +176,7 @@ TEST(Tunnelling, SubStepsInRealTime) {
 // counted.
 TEST(Tunnelling, SubStepsStopAtTheirLimit) {
   scene::Description d = at_soft_plate(100.0);
-  d.exchange.tunnelling = "substep";
+  d.exchange.tunnelling = scene::TunnellingPolicy::kSubstep;
   d.exchange.shortest_refresh_s = 2e-3;
   d.duration_s = 0.011;
   const Ran ran = run(d);

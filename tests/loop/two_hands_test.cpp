@@ -8,6 +8,7 @@
 #include "loop/replay.h"
 #include "loop/summary.h"
 #include "palpate/core/error.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/run.h"
 #include "small_scenes.h"
@@ -81,7 +82,7 @@ TEST(TwoHands, PressEquallyOnAFreeBlock) {
   for (const char* how : {"frozen", "condensed", "points", "monolithic"}) {
     scene::Description d = squeezed();
     if (std::string(how) == "monolithic")
-      d.exchange.scheme = how;
+      d.exchange.scheme = *value_named<scene::ExchangeScheme>(how);
     else
       d.exchange.linearisation = how;
     HandsFelt both;
@@ -101,7 +102,7 @@ TEST(TwoHands, PressEquallyOnAFreeBlock) {
 scene::Description hanging(const std::string& how) {
   scene::Description d = squeezed();
   if (how == "monolithic")
-    d.exchange.scheme = how;
+    d.exchange.scheme = *value_named<scene::ExchangeScheme>(how);
   else
     d.exchange.linearisation = how;
   d.integrator.step_s = d.exchange.contact_refresh_s;
@@ -181,7 +182,7 @@ TEST(TwoHands, TendToOneSystem) {
     whole.tool->tick_s = whole.hands[0].tool.tick_s = 2e-4;  // so that the tick's error is negligible
     whole.exchange.linearisation_error = 0.0;
     scene::Description truth = whole;
-    truth.exchange.scheme = "monolithic";
+    truth.exchange.scheme = scene::ExchangeScheme::kMonolithic;
     truth.exchange.exchange_period_s = truth.exchange.contact_refresh_s = 1e-3;
     HandsFelt exact;
     run(truth, exact);
@@ -207,7 +208,7 @@ TEST(TwoHands, TendToOneSystem) {
 TEST(TwoHands, BalanceTheirEnergy) {
   for (const char* scheme : {"partitioned", "monolithic"}) {
     scene::Description d = squeezed();
-    d.exchange.scheme = scheme;
+    d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
     d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 1e-3;
     d.tool->tick_s = d.hands[0].tool.tick_s = 2e-4;
     d.integrator.name = "cvode-bdf";
@@ -232,7 +233,7 @@ TEST(TwoHands, BalanceTheirEnergy) {
 
 TEST(TwoHands, OfOneSystemTickTogether) {
   scene::Description d = squeezed();
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   d.hands[0].tool.tick_s = 5e-4;
   try {
     loop::assemble(d);

@@ -8,6 +8,7 @@
 #include "loop/over_block.h"
 #include "loop/small_scenes.h"
 #include "palpate/core/error.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/mesh/generators.h"
 #include "session/frame_folder.h"
 #include "session/missing_outputs.h"
@@ -151,7 +152,7 @@ TEST_F(Pictures, APictureIsOfTheLargestForceInBothSchemes) {
     back.time_s = 0.25;  // slow enough for the coupling to pull less than the block pressed
     d.device->keyframes = {d.device->keyframes[0], pressed, back};
     d.duration_s = 0.25;
-    d.exchange.scheme = scheme;
+    d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
     const auto world = loop::assemble(d);
     session::PeakForcePicture peak(session::Shade::kDisplacement);
     ASSERT_TRUE(run(*world, peak).status.ok());

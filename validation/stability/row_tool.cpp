@@ -72,7 +72,8 @@ double growth_of_cube(const Column& column, scene::Description d) {
 Verdicts expect(const CaseContext& context, const scene::Description& d) {
   if (is_static(context.column)) return {Verdict::kStable, Verdict::kBounded, Verdict::kError};
   const double rate = d.tool->coupling.damping_n_s_m / d.tool->mass_kg;
-  const bool out_of_steps = d.exchange.scheme == "monolithic" && rate * period_of(d) / 10.0 > kMaxSteps;
+  const bool out_of_steps =
+      d.exchange.scheme == scene::ExchangeScheme::kMonolithic && rate * period_of(d) / 10.0 > kMaxSteps;
   if (out_of_steps && (is_explicit(context.column) || is_multirate(context.column))) return {Verdict::kError};
   if (!context.column.fixed) return {Verdict::kStable};
   if (is_explicit(context.column) && growth_of_cube(context.column, d) > 1.0) return {Verdict::kError};
@@ -84,7 +85,8 @@ Verdicts expect(const CaseContext& context, const scene::Description& d) {
 /// its coupling, with b = 1/4 and c = min(r/4, 1/6), r = 2 z/y = b/(k H), for every spectral radius. A light
 /// tool has y = 3e3.
 double overshoot(const Column& column, const scene::Description& d) {
-  if (d.exchange.scheme != "monolithic" || column.entry->traits.family != "Newmark") return 1.0;
+  if (d.exchange.scheme != scene::ExchangeScheme::kMonolithic || column.entry->traits.family != "Newmark")
+    return 1.0;
   const double y = kToolPeriod * std::sqrt(d.tool->coupling.stiffness_n_m / d.tool->mass_kg),
                r = d.tool->coupling.damping_n_s_m / (d.tool->coupling.stiffness_n_m * kToolPeriod);
   return 1.0 + 0.25 * y + std::min(0.25 * r, 1.0 / 6.0) * y * y;
@@ -159,7 +161,7 @@ Row density_ratio_row() {
   const scene::Description with_heavy = under_a_tool(press, heavy, heavy * rate * rate, 2.0 * heavy * rate),
                            with_light = under_a_tool(press, light, 300.0, kLightDamping);
   const auto as_one = [](scene::Description d) {
-    d.exchange.scheme = "monolithic";
+    d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
     // At vertices: by points, explicit methods would end by too many steps of the light ball only after a
     // cell's 20 s.
     d.contacts[0].method = "analytic";

@@ -17,10 +17,13 @@ struct RealTimeResult {
 
   std::vector<float> lateness_s;  ///< Per tick: from its due time to the wake-up of its thread [s].
   std::vector<float> work_s;      ///< Per tick: from the wake-up to the wrench on the device [s].
-  /// Per exchange: from the instant that it describes to its publication [s].
+  /// Per exchange: from the instant that it describes to its publication; single-rate scheme, per tick: from
+  /// its due time to the wrench on the device [s].
   std::vector<float> latency_s;
 
-  long missed_ticks = 0;    ///< Late by a tick or more; they follow each other without a pause.
+  long missed_ticks = 0;  ///< Late by a tick or more; they follow each other without a pause.
+  /// Ticks that a longer step covered, because it began a tick or more late; single-rate scheme only.
+  long skipped_ticks = 0;
   long left_out_ticks = 0;  ///< Ticks omitted where the clock was restarted.
   long stalls = 0;          ///< Gaps without a wrench beyond the watchdog's time; the force ramped in again.
   long stretched_periods = 0;  ///< Additional periods that the bodies advanced after one query.
@@ -51,6 +54,7 @@ void visit_real_time(F&& f, const RealTimeResult& r) {
   f("ticks_timed", static_cast<long long>(r.lateness_s.size()));
   f("missed_ticks", static_cast<long long>(r.missed_ticks));
   f("stalls", static_cast<long long>(r.stalls));
+  f("skipped_ticks", static_cast<long long>(r.skipped_ticks));
   f("left_out_ticks", static_cast<long long>(r.left_out_ticks));
   for (const Series& s :
        {Series{"tick_late_p50_s", "tick_late_p99_s", "tick_late_p99_9_s", "tick_late_max_s", r.lateness_s},

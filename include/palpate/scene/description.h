@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "palpate/contact/spec.h"
@@ -61,11 +63,26 @@ struct CompareSpec {
   HapticCompareSpec haptic;  ///< Settings of `--haptic`.
 };
 
-/// Coupling of tool and bodies in time: the `[exchange]` table.  Not to be confused with the virtual coupling
-/// between hand and tool (ToolSpec).
+/// Coupling of tools and bodies: tools step separately, at the haptic rate, and exchange contact records with
+/// the bodies; tools are blocks of the State, and one integrator advances everything, with the handle's path
+/// known in advance; the same with a sampled handle and one advance of everything per haptic tick.
+enum class ExchangeScheme { kPartitioned, kMonolithic, kSingleRate };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 3> option_names(ExchangeScheme) {
+  return {"partitioned", "monolithic", "single_rate"};
+}
+
+/// Treatment of bodies that may pass through each other between two refreshes of contact: count the events,
+/// or refresh contact and exchange before a skin has penetrated the other body by more than half of its
+/// thickness.
+enum class TunnellingPolicy { kReport, kSubstep };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 2> option_names(TunnellingPolicy) { return {"report", "substep"}; }
+
+/// Coupling of tools and bodies in time: the `[exchange]` table.  Not to be confused with the virtual
+/// coupling between hand and tool (ToolSpec).
 struct CosimulationSpec {
-  /// "partitioned", or "monolithic": tool and bodies in one state of one integrator, without exchange.
-  std::string scheme = "partitioned";
+  ExchangeScheme scheme = ExchangeScheme::kPartitioned;  ///< Coupling of tools and bodies.
   /// Model of the bodies between exchanges: "points", contact points on a reduced model of the bodies'
   /// response; or a linear model: "condensed", including the bodies' response, or "frozen", with the bodies
   /// at rest.
@@ -74,16 +91,18 @@ struct CosimulationSpec {
   /// reduction.
   double linearisation_error = 0.1;
   double exchange_period_s = 0.01;  ///< Period of exchange between tool and bodies [s].
-  /// Contact refresh period, an integer fraction of the exchange period [s].
+  /// Contact refresh period [s]: an integer fraction of the exchange period, or for
+  /// ExchangeScheme::kSingleRate the tick.
   double contact_refresh_s = 0.01;
-  /// Treatment of bodies that may pass through each other between two refreshes: "report" counts the events;
-  /// "substep" refreshes contact and exchanges before a skin has penetrated the other body by more than
-  /// half of its thickness.
-  std::string tunnelling = "report";
-  double shortest_refresh_s = 1e-5;  ///< Lower limit of the refresh period for "substep" [s].
+  TunnellingPolicy tunnelling = TunnellingPolicy::kReport;  ///< Treatment of possible tunnelling.
+  double shortest_refresh_s =
+      1e-5;  ///< Lower limit of the refresh period for TunnellingPolicy::kSubstep [s].
   /// Number of ticks from an exchange to the first tick that uses its result, in virtual time; models the
   /// computation time of a real-time run.
   int latency_ticks = 0;
+
+  /// Returns whether tools are blocks of the State.
+  bool has_tools_in_state() const { return scheme != ExchangeScheme::kPartitioned; }
 };
 
 /// Additional hand: a `[[hand]]` table of the scene.

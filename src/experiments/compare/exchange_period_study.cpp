@@ -27,7 +27,7 @@ double common_refresh(const std::vector<double>& periods) {
       shortest);
 }
 
-scene::Description with_scheme(scene::Description d, const std::string& scheme, double period,
+scene::Description with_scheme(scene::Description d, scene::ExchangeScheme scheme, double period,
                                double refresh) {
   d.exchange.scheme = scheme;
   d.exchange.exchange_period_s = period;
@@ -62,7 +62,7 @@ ExchangeStudy compare_exchange(const scene::Description& d, const ExchangeOption
   const std::vector<double>& periods = d.compare.exchange_periods_s;
   const double refresh = common_refresh(periods),
                shortest = *std::min_element(periods.begin(), periods.end());
-  const scene::Description whole = with_scheme(d, "monolithic", shortest, refresh);
+  const scene::Description whole = with_scheme(d, scene::ExchangeScheme::kMonolithic, shortest, refresh);
   const Run reference = run_once(whole, d.compare.duration_s, options.stop);
   if (reference.result.stopped) return out;
   const bool comparable = reference.result.status.ok();
@@ -78,8 +78,8 @@ ExchangeStudy compare_exchange(const scene::Description& d, const ExchangeOption
     out.own_error = distance(check.trajectory, reference.trajectory);
   for (double period : periods) {
     if (options.stop && options.stop->load()) return out;
-    const Run run = run_once(with_scheme(d, "partitioned", period, refresh), d.compare.duration_s,
-                             options.stop, options.seed_defect);
+    const Run run = run_once(with_scheme(d, scene::ExchangeScheme::kPartitioned, period, refresh),
+                             d.compare.duration_s, options.stop, options.seed_defect);
     done(fmt::format("exchange period {:g} s", period));
     if (run.result.stopped) return out;
     ExchangePoint point{period, no_distance(), run.result.cpu_s};

@@ -43,7 +43,7 @@ void refuse_against_monolithic(const scene::Description& d) {
   if (d.bodies.empty())
     fail("{}: there is no [[body]], so nothing is exchanged; `palpate compare` compares tick periods",
          d.path);
-  if (d.exchange.scheme == "monolithic")
+  if (d.exchange.scheme == scene::ExchangeScheme::kMonolithic)
     fail("{}: exchange.scheme = \"monolithic\" is the reference itself; use \"partitioned\"", d.path);
 }
 

@@ -183,7 +183,7 @@ TEST(Haptic, TheReferenceIsOneSystemAndItsCheckIsCoarserAndOfAnotherFamily) {
   const scene::Description d = press({"exchange.latency_ticks=5", "integrator.rtol=1e-2"});
   const compare::MonolithicScene fine = compare::monolithic_scene(d),
                                  coarse = compare::monolithic_scene(d, 2.0);
-  EXPECT_EQ(fine.description.exchange.scheme, "monolithic");
+  EXPECT_EQ(fine.description.exchange.scheme, scene::ExchangeScheme::kMonolithic);
   EXPECT_EQ(fine.description.exchange.latency_ticks, 0);
   EXPECT_DOUBLE_EQ(fine.description.exchange.contact_refresh_s, 2.5e-4);
   EXPECT_DOUBLE_EQ(fine.description.integrator.rtol, 1e-7);

@@ -1,0 +1,37 @@
+#include "single_rate.h"
+
+#include <utility>
+
+#include "monolithic_ticks.h"
+#include "palpate/core/error.h"
+
+namespace palpate::loop {
+
+SingleRate::SingleRate(World& world, BodyLoop& bodies, const RunResult& result,
+                       std::vector<HapticLoop*> loops)
+    : world_(world), bodies_(bodies), result_(result), loops_(std::move(loops)) {
+  PALPATE_CHECK(world.monolithic() && world.stepper && loops_.size() == world.tools.size(),
+                "ticks of a single rate need tools that are blocks of the State");
+}
+
+void SingleRate::tick(double t0, double t1) {
+  for (HapticLoop* loop : loops_) loop->begin_step(t0, t1);
+  bodies_.advance(t0, t1, t1 - t0);
+  if (!result_.status.ok()) return;
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    TickRecord record = tick_at(world_, world_.tools[i], t1, world_.state.view());
+    record.length = t1 - t0;
+    record.left_out = static_cast<std::uint32_t>(left_out_);
+    loops_[i]->render_force(record);
+    bodies_.record_tick(i, record);
+  }
+  left_out_ = 0;
+}
+
+void SingleRate::mark(bool ramps_in, long left_out) {
+  left_out_ = left_out;
+  if (!ramps_in) return;
+  for (HapticLoop* loop : loops_) loop->ramp_in();
+}
+
+}  // namespace palpate::loop

@@ -1,0 +1,34 @@
+#pragma once
+#include <vector>
+
+#include "body_loop.h"
+#include "haptic_loop.h"
+
+namespace palpate::loop {
+
+/// Ticks of the single-rate scheme. A tick samples every handle, advances tools and bodies as one system to
+/// the end of the tick, and sends the wrenches of that same state:
+///
+///     handle(t1) --> coupling in the State --> step t0 -> t1 --> wrench(tool(t1), handle(t1)) --> device
+///
+/// No contact record is exchanged, and nothing is linearised or reduced for the tools; what a hand feels is
+/// one tick old.
+class SingleRate {
+ public:
+  /// @param loops  one per hand, in the numbering of scene::hands_of(); all must outlive this object
+  SingleRate(World& world, BodyLoop& bodies, const RunResult& result, std::vector<HapticLoop*> loops);
+  /// Advances by one tick from t0 to t1 [s]. Stops where the step fails, with the status in the result.
+  /// @pre contact was queried at t0
+  void tick(double t0, double t1);
+  /// Sets properties of the records of the next tick, in real time.
+  void mark(bool ramps_in, long left_out);
+
+ private:
+  World& world_;
+  BodyLoop& bodies_;
+  const RunResult& result_;
+  std::vector<HapticLoop*> loops_;
+  long left_out_ = 0;
+};
+
+}  // namespace palpate::loop

@@ -1,0 +1,126 @@
+#include "single_rate_real_time.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "palpate/device/limiter.h"
+#include "real_time_run.h"
+#include "real_time_thread.h"
+#include "single_rate.h"
+
+namespace palpate::loop {
+namespace {
+
+// One thread, by the wall clock:
+//
+//     due(i)   sample handle, step tools and bodies, wrench to the device
+//              then observers and the contact query of the next step, in the rest of the tick
+//
+// A tick that begins a tick or more after its due time is late because its predecessors took too long, or
+// because the system gave the processor to others. Its step covers all ticks that have become due, of which
+// it is the last: an implicit step of several ticks costs the same as one of a single tick, so the work per
+// second of simulated time decreases until the loop keeps up, and each wrench belongs to the newest handle.
+// The ticks before it are skipped and counted. Beyond kFallTime (limiter.h) the clock is restarted instead,
+// as in the partitioned scheme (real_time_run.cpp).
+constexpr std::int64_t kStall = std::int64_t(1e9 * device::kFallTime);  // [ns]
+
+/// Time from readiness to the first tick [ns].
+constexpr std::int64_t kLead = 20'000'000;
+
+float seconds(std::int64_t ns) { return static_cast<float>(1e-9 * static_cast<double>(ns)); }
+
+class SingleRateRealTime {
+ public:
+  SingleRateRealTime(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result)
+      : world_(world),
+        bodies_(bodies),
+        options_(options),
+        result_(result),
+        out_(result.real_time.emplace()),
+        tick_s_(bodies.period()),
+        tick_ns_(std::llround(1e9 * tick_s_)),
+        count_(bodies.periods()) {
+    std::vector<HapticLoop*> loops;
+    for (ToolInstance& tool : world.tools) loops.push_back(&loops_.emplace_back(world.description, tool));
+    ticks_.emplace(world, bodies, result, std::move(loops));
+    out_.tick_s = out_.period_s = tick_s_;
+    out_.stall_s = device::kFallTime;
+    for (std::vector<float>* series : {&out_.lateness_s, &out_.work_s, &out_.latency_s})
+      series->reserve(static_cast<std::size_t>(count_));
+  }
+
+  void run() {
+    if (!await_devices(world_, options_)) {
+      result_.stopped = true;
+      return;
+    }
+    for (HapticLoop& loop : loops_) loop.start(0.0);
+    bodies_.start();
+    bodies_.query();
+    world_.stepper->prepare(tick_s_);
+    const RealTimeClaim claim(out_);
+    start_ns_ = now_ns() + kLead;
+    tick_by_the_clock();
+    for (HapticLoop& loop : loops_) loop.end();
+  }
+
+ private:
+  double time_of(long tick) const { return bodies_.period_start(static_cast<int>(tick)); }
+
+  void tick_by_the_clock() {
+    std::int64_t woke_before = start_ns_;
+    for (long done = 0; done < count_;) {
+      const long next = done + 1;
+      sleep_until_ns(start_ns_ + next * tick_ns_);
+      result_.stopped = options_.stop && options_.stop->load(std::memory_order_relaxed);
+      if (result_.stopped) return;
+      const std::int64_t woke = now_ns(), late = woke - start_ns_ - next * tick_ns_;
+      const long behind = static_cast<long>(late / tick_ns_);
+      const long left_out = late > kStall ? behind : 0;  // the clock is restarted
+      start_ns_ += left_out * tick_ns_;
+      const long skipped = left_out > 0 ? 0 : std::min(behind, count_ - next);
+      ticks_->mark(woke - std::exchange(woke_before, woke) > tick_ns_ + kStall, left_out);
+      ticks_->tick(time_of(done), time_of(next + skipped));
+      if (bodies_.ended()) return;
+      note(late, left_out, skipped, now_ns() - woke);
+      done = next + skipped;
+      bodies_.close_period(time_of(done));
+      if (done < count_) bodies_.query();
+    }
+  }
+
+  void note(std::int64_t late, long left_out, long skipped, std::int64_t work) {
+    out_.lateness_s.push_back(seconds(late));
+    out_.work_s.push_back(seconds(work));
+    out_.latency_s.push_back(seconds(late - left_out * tick_ns_ + work));
+    out_.missed_ticks += late >= tick_ns_;
+    out_.left_out_ticks += left_out;
+    out_.skipped_ticks += skipped;
+    out_.stalls += left_out > 0;
+  }
+
+  World& world_;
+  BodyLoop& bodies_;
+  const RunOptions& options_;
+  RunResult& result_;
+  RealTimeResult& out_;
+  std::deque<HapticLoop> loops_;
+  std::optional<SingleRate> ticks_;
+  double tick_s_;
+  std::int64_t tick_ns_, start_ns_ = 0;
+  long count_;
+};
+
+}  // namespace
+
+void run_single_rate_in_real_time(World& world, BodyLoop& bodies, const RunOptions& options,
+                                  RunResult& result) {
+  check_clock(world, true);
+  SingleRateRealTime(world, bodies, options, result).run();
+}
+
+}  // namespace palpate::loop
