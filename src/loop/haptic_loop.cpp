@@ -23,12 +23,23 @@ HapticLoop::~HapticLoop() {
   } catch (...) {}  // the device failed, which the run reports
 }
 
-void HapticLoop::start(double t) { tool_.handle = handle_ = tool_.device->sample(t); }
+void HapticLoop::start(double t) {
+  tool_.handle = handle_ = tool_.device->sample(t);
+  time_ = t;
+  hold_handle();
+}
+
+/// Passes the last sample to a coupling in the State, until the next step begins.
+void HapticLoop::hold_handle() {
+  const MonolithicTool* const tool = tool_.monolithic();
+  if (tool && tool->sampled) tool->sampled->set(time_, handle_, time_, handle_);
+}
 
 void HapticLoop::archive(Archive& a) {
   a("handle", handle_);
   a("time", time_);
   a("live", live_);
+  if (a.is_restoring()) hold_handle();
   if (!touch_) return;
   a("touch", *touch_);
   a("taken_up", active_version_);

@@ -60,6 +60,7 @@ class HapticLoop {
  private:
   tool::HandleMotion handle_motion() const;
   bool hand_in_state() const;
+  void hold_handle();
   /// Computes and sends the wrench for the current handle sample.
   void send_wrench(TickRecord& tick);
 

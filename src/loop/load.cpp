@@ -107,7 +107,7 @@ scene::Kinds make_kinds() {
        .kinds = {{"partitioned", part_keys({"linearisation", "linearisation_error", "exchange_period_s",
                                             "contact_refresh_s", "latency_ticks"})},
                  {"monolithic", part_keys({"exchange_period_s", "contact_refresh_s"})},
-                 {"single_rate"}},
+                 {"single_rate", part_keys({"exchange_period_s", "contact_refresh_s"})}},
        .default_kind = [](const Description&) {
          return std::string(name_of(scene::CosimulationSpec{}.scheme));
        }});

@@ -8,7 +8,7 @@ namespace palpate::loop {
 
 double period_of(const scene::Description& d) {
   if (d.tool && d.exchange.scheme == scene::ExchangeScheme::kPartitioned) return d.exchange.exchange_period_s;
-  if (d.tool && d.exchange.scheme == scene::ExchangeScheme::kSingleRate) return d.tool->tick_s;
+  if (d.tool && d.exchange.scheme == scene::ExchangeScheme::kSingleRate) return d.exchange.contact_refresh_s;
   if (!d.contacts.empty()) return d.exchange.contact_refresh_s;
   return d.record ? d.record->state_period_s : d.duration_s;
 }

@@ -10,7 +10,8 @@ namespace palpate::loop {
 /// of the step gets the newest sample.
 class SampledHandle {
  public:
-  /// Sets the samples at the start t0 and at the end t1 of a step [s]. @pre t1 > t0
+  /// Sets the samples at the start t0 and at the end t1 of a step [s]. Equal times hold the handle at
+  /// `end`.
   void set(double t0, const device::HandleSample& start, double t1, const device::HandleSample& end) {
     t0_ = t0;
     t1_ = t1;

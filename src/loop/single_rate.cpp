@@ -14,6 +14,18 @@ SingleRate::SingleRate(World& world, BodyLoop& bodies, const RunResult& result,
                 "ticks of a single rate need tools that are blocks of the State");
 }
 
+namespace {
+/// Tolerance for equal times, relative to a period: ticks and periods are multiples of different decimal
+/// numbers.
+constexpr double kSameQuery = 1e-9;
+}  // namespace
+
+void SingleRate::query_if_due(double t, double period_end) {
+  if (t < next_query_ - kSameQuery * period_end) return;
+  bodies_.query();
+  next_query_ = bodies_.next_query(t, period_end);
+}
+
 void SingleRate::tick(double t0, double t1) {
   for (HapticLoop* loop : loops_) loop->begin_step(t0, t1);
   bodies_.advance(t0, t1, t1 - t0);

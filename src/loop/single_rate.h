@@ -17,8 +17,12 @@ class SingleRate {
  public:
   /// @param loops  one per hand, in the numbering of scene::hands_of(); all must outlive this object
   SingleRate(World& world, BodyLoop& bodies, const RunResult& result, std::vector<HapticLoop*> loops);
+  /// Queries contact where it is due at time t: at the start of a period, and with tunnelling = "substep"
+  /// when a skin may otherwise penetrate too deep (BodyLoop::next_query).
+  /// @param period_end  end of the period of contact queries that t belongs to [s]
+  void query_if_due(double t, double period_end);
   /// Advances by one tick from t0 to t1 [s]. Stops where the step fails, with the status in the result.
-  /// @pre contact was queried at t0
+  /// @pre query_if_due() was called for t0
   void tick(double t0, double t1);
   /// Sets properties of the records of the next tick, in real time.
   void mark(bool ramps_in, long left_out);
@@ -28,6 +32,7 @@ class SingleRate {
   BodyLoop& bodies_;
   const RunResult& result_;
   std::vector<HapticLoop*> loops_;
+  double next_query_ = 0.0;  ///< [s]
   long left_out_ = 0;
 };
 

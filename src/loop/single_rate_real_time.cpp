@@ -18,7 +18,7 @@ namespace {
 // One thread, by the wall clock:
 //
 //     due(i)   sample handle, step tools and bodies, wrench to the device
-//              then observers and the contact query of the next step, in the rest of the tick
+//              then, in the rest of the tick, the observers and the contact query where one is due
 //
 // A tick that begins a tick or more after its due time is late because its predecessors took too long, or
 // because the system gave the processor to others. Its step covers all ticks that have become due, of which
@@ -41,13 +41,15 @@ class SingleRateRealTime {
         options_(options),
         result_(result),
         out_(result.real_time.emplace()),
-        tick_s_(bodies.period()),
+        per_period_(whole_number(bodies.period() / world.description.tool->tick_s)),
+        tick_s_(bodies.period() / per_period_),
         tick_ns_(std::llround(1e9 * tick_s_)),
-        count_(bodies.periods()) {
+        count_(static_cast<long>(per_period_) * bodies.periods()) {
     std::vector<HapticLoop*> loops;
     for (ToolInstance& tool : world.tools) loops.push_back(&loops_.emplace_back(world.description, tool));
     ticks_.emplace(world, bodies, result, std::move(loops));
-    out_.tick_s = out_.period_s = tick_s_;
+    out_.tick_s = tick_s_;
+    out_.period_s = bodies.period();
     out_.stall_s = device::kFallTime;
     for (std::vector<float>* series : {&out_.lateness_s, &out_.work_s, &out_.latency_s})
       series->reserve(static_cast<std::size_t>(count_));
@@ -60,7 +62,7 @@ class SingleRateRealTime {
     }
     for (HapticLoop& loop : loops_) loop.start(0.0);
     bodies_.start();
-    bodies_.query();
+    ticks_->query_if_due(0.0, bodies_.period_start(1));
     world_.stepper->prepare(tick_s_);
     const RealTimeClaim claim(out_);
     start_ns_ = now_ns() + kLead;
@@ -69,7 +71,7 @@ class SingleRateRealTime {
   }
 
  private:
-  double time_of(long tick) const { return bodies_.period_start(static_cast<int>(tick)); }
+  double time_of(long tick) const { return static_cast<double>(tick) * tick_s_; }
 
   void tick_by_the_clock() {
     std::int64_t woke_before = start_ns_;
@@ -87,9 +89,10 @@ class SingleRateRealTime {
       ticks_->tick(time_of(done), time_of(next + skipped));
       if (bodies_.ended()) return;
       note(late, left_out, skipped, now_ns() - woke);
+      const bool closes = (next + skipped) / per_period_ > done / per_period_;
       done = next + skipped;
-      bodies_.close_period(time_of(done));
-      if (done < count_) bodies_.query();
+      if (closes) bodies_.close_period(time_of(done));
+      if (done < count_) ticks_->query_if_due(time_of(done), time_of((done / per_period_ + 1) * per_period_));
     }
   }
 
@@ -110,6 +113,7 @@ class SingleRateRealTime {
   RealTimeResult& out_;
   std::deque<HapticLoop> loops_;
   std::optional<SingleRate> ticks_;
+  int per_period_;  ///< Ticks per period.
   double tick_s_;
   std::int64_t tick_ns_, start_ns_ = 0;
   long count_;

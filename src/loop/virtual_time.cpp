@@ -56,8 +56,8 @@ void VirtualTime::end() {
 }
 
 void VirtualTime::one_period(double t0, double t1) {
+  if (single_) return tick_everything(t0, t1);
   bodies_.query();
-  if (single_) return single_->tick(t0, t1);
   // Ticks use the contact found before them, so they stop where the next query is due.
   for (double t = t0, next;; t = next) {
     const bool exchanged = world_.has_tool_of_ticks();
@@ -67,6 +67,16 @@ void VirtualTime::one_period(double t0, double t1) {
     bodies_.advance(t, next, world_.description.exchange.contact_refresh_s);
     if (!result_.status.ok() || next >= t1) return;
     bodies_.query();
+  }
+}
+
+/// Runs the ticks of a period of the single-rate scheme.
+void VirtualTime::tick_everything(double t0, double t1) {
+  const int ticks = whole_number((t1 - t0) / world_.description.tool->tick_s);
+  const auto start = [&](int i) { return i == ticks ? t1 : t0 + i * (t1 - t0) / ticks; };
+  for (int i = 0; i < ticks && result_.status.ok(); ++i) {
+    single_->query_if_due(start(i), t1);
+    single_->tick(start(i), start(i + 1));
   }
 }
 

@@ -94,17 +94,22 @@ bool is_multiple(double whole, double part) {
 void check_period(const Document& doc, const std::string& key, const std::string& where, double period,
                   double tick, const std::string& tick_key) {
   const double most = 1e6;
+  const std::string_view name = key.substr(key.find_last_of('.') + 1) == "contact_refresh_s"
+                                    ? "contact_refresh_s"
+                                : where == "exchange" ? "exchange_period_s"
+                                                      : "exchange_periods_s";
   if (period / tick > most)
-    refuse(location(doc, tick_key), where,
-           fmt::format("tick_s = {} of the tool gives {:.3g} ticks per exchange period of {} s, at most {:g} "
-                       "are possible; haptic devices use 0.001",
-                       tick, period / tick, period, most));
+    refuse(
+        location(doc, tick_key), where,
+        fmt::format("tick_s = {} of the tool gives {:.3g} ticks per {} of {} s, at most {:g} are possible; "
+                    "haptic devices use 0.001",
+                    tick, period / tick, name == "contact_refresh_s" ? "contact refresh" : "exchange period",
+                    period, most));
   if (is_multiple(period, tick)) return;
   const double below = std::floor(period / tick), n = std::max(1.0, below);
   refuse(location(doc, key), where,
-         fmt::format("{} = {} must be a multiple of the tool's tick of {} s; use {:.9g} or {:.9g}",
-                     where == "exchange" ? "exchange_period_s" : "exchange_periods_s", period, tick, n * tick,
-                     (n + 1.0) * tick));
+         fmt::format("{} = {} must be a multiple of the tool's tick of {} s; use {:.9g} or {:.9g}", name,
+                     period, tick, n * tick, (n + 1.0) * tick));
 }
 
 /// Checks times of material changes.  Between exchanges the tool uses a model of the body taken earlier;
@@ -156,6 +161,17 @@ void check_periods(const Document& doc, const Description& d) {
   const CosimulationSpec& c = d.exchange;
   const bool own = given(doc, "exchange.exchange_period_s");
   const double compared = d.compare.duration_s > 0.0 ? d.compare.duration_s : d.duration_s;
+  if (c.scheme == ExchangeScheme::kSingleRate) {
+    const bool refresh = given(doc, "exchange.contact_refresh_s");
+    for (const Hand& hand : hands_of(d)) {
+      const std::string tick = hand.tool_key + ".tick_s";
+      check_period(doc,
+                   refresh ? "exchange.contact_refresh_s"
+                   : own   ? "exchange.exchange_period_s"
+                           : tick,
+                   "exchange", c.contact_refresh_s, hand.tool->tick_s, tick);
+    }
+  }
   if (!c.has_tools_in_state()) {
     for (const Hand& hand : hands_of(d)) {
       const std::string tick = hand.tool_key + ".tick_s";
@@ -191,7 +207,6 @@ void check_latency(const Document& doc, const Description& d) {
 void check_exchange(const Document& doc, Description& d) {
   CosimulationSpec& c = d.exchange;
   if (!given(doc, "exchange.contact_refresh_s")) c.contact_refresh_s = c.exchange_period_s;
-  if (c.scheme == ExchangeScheme::kSingleRate && d.tool) c.contact_refresh_s = d.tool->tick_s;
   if (d.tool)
     check_periods(doc, d);
   else if (c.has_tools_in_state())
@@ -207,7 +222,7 @@ void check_exchange(const Document& doc, Description& d) {
            fmt::format("shortest_refresh_s = {} must be less than contact_refresh_s = {}: otherwise "
                        "\"substep\" has no effect",
                        c.shortest_refresh_s, c.contact_refresh_s));
-  if (c.has_tools_in_state()) return;  // Contact has an independent refresh period, or the tick.
+  if (c.has_tools_in_state()) return;  // Contact has an independent refresh period.
   if (!is_multiple(c.exchange_period_s, c.contact_refresh_s))
     refuse(location(doc, "exchange.contact_refresh_s"), "exchange",
            fmt::format("contact_refresh_s = {} must divide exchange_period_s = {} evenly; use {:.9g}",

@@ -99,10 +99,9 @@ void check_rate(const scene::Description& d, double per_s, const std::string& as
       "{}: the frame rate exceeds the loop rate of the scene, one state per {:g} s or {:g} per second of "
       "simulated time ({}); reduce the frame rate or shorten the period",
       asked, period, 1.0 / period,
-      d.tool && d.exchange.scheme == scene::ExchangeScheme::kPartitioned  ? "exchange.exchange_period_s"
-      : d.tool && d.exchange.scheme == scene::ExchangeScheme::kSingleRate ? "tool.tick_s"
-      : !d.contacts.empty()                                               ? "exchange.contact_refresh_s"
-                            : "record.state_period_s, else all of duration_s");
+      d.tool && !d.exchange.has_tools_in_state() ? "exchange.exchange_period_s"
+      : !d.contacts.empty() || d.tool            ? "exchange.contact_refresh_s"
+                                                 : "record.state_period_s, else all of duration_s");
 }
 
 /// Writes pictures to every working sink, and reports sinks that fail.

@@ -100,6 +100,10 @@ Cases make_cases() {
   one.scene.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   one.scene.exchange.exchange_period_s = one.scene.exchange.contact_refresh_s = 0.002;
   one.scene.integrator.step_s = 0.001;
+  Case& single = out["SingleRate"] = pressed("points");
+  single.scene.exchange.scheme = scene::ExchangeScheme::kSingleRate;
+  Case& single_hand = out["SingleRateHand"] = controlled;
+  single_hand.scene.exchange.scheme = scene::ExchangeScheme::kSingleRate;
 #ifdef PALPATE_HAS_GL
   Case& images = out["Images"] = pressed("points");
   images.scene.contacts[0].method = "image";

@@ -189,7 +189,7 @@ TEST(EnergyLedger, TheHandsWork) {
 // A free tool swings about a handle that has jumped aside: m x'' = -k x - b x'. The spring's energy k x_0^2 /
 // 2 oscillates, and is dissipated only by the coupling's damper.
 TEST(EnergyLedger, NamesTheToolsParts) {
-  for (const char* scheme : {"monolithic", "partitioned"}) {
+  for (const char* scheme : {"monolithic", "partitioned", "single_rate"}) {
     scene::Description d = small_scenes::pressed_block(-0.01);
     const double aside = 0.002, mass = d.tool->mass_kg, k = d.tool->coupling.stiffness_n_m,
                  b = d.tool->coupling.damping_n_s_m;

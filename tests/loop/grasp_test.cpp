@@ -51,10 +51,10 @@ double mass_of(const scene::Description& d) { return d.bodies[0].density_kg_m3 *
 // A body hanging at rest exerts m g on the hand, and a moment of m g times the distance to its centre; when
 // released, it falls.
 TEST(Grasp, WhatHangsHasItsWeight) {
-  for (const char* linearisation : {"points", "condensed", "frozen", "monolithic"}) {
+  for (const char* linearisation : {"points", "condensed", "frozen", "monolithic", "single_rate"}) {
     scene::Description d = hanging_block();
-    if (linearisation == std::string("monolithic"))
-      d.exchange.scheme = *value_named<scene::ExchangeScheme>(linearisation);
+    if (const auto scheme = value_named<scene::ExchangeScheme>(linearisation))
+      d.exchange.scheme = *scheme;
     else
       d.exchange.linearisation = linearisation;
     const auto world = loop::assemble(d);

@@ -36,7 +36,7 @@ std::vector<double> shares(const std::string& scheme, std::optional<double> ramp
 // Smoothstep over 30 ms from the first tick, then the full force. A bounded slew passes nothing at the first
 // tick, which has no previous time.
 TEST(Ramp, IsFeltAsTheSceneSays) {
-  for (const std::string scheme : {"partitioned", "monolithic"}) {
+  for (const std::string scheme : {"partitioned", "monolithic", "single_rate"}) {
     SCOPED_TRACE(scheme);
     const std::vector<double> ramped = shares(scheme, 0.03), at_once = shares(scheme, {});
     ASSERT_EQ(ramped.size(), 40u);

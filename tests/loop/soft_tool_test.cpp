@@ -35,13 +35,13 @@ double mass_of(const scene::Description& d) { return d.bodies[0].density_kg_m3 *
 
 // A body hanging from the tool exerts m g on the hand, and a moment of m g times the distance to its centre.
 TEST(SoftTool, WeighsWhatItWeighs) {
-  for (const char* linearisation : {"points", "condensed", "monolithic"}) {
+  for (const char* linearisation : {"points", "condensed", "monolithic", "single_rate"}) {
     scene::Description d = carried_block();
     d.duration_s = 1.0;
     d.gravity_m_s2 = Vec3(0, 0, -9.81);
     d.bodies[0].mass_damping_per_s = 20.0;  // damped to rest
-    if (linearisation == std::string("monolithic"))
-      d.exchange.scheme = *value_named<scene::ExchangeScheme>(linearisation);
+    if (const auto scheme = value_named<scene::ExchangeScheme>(linearisation))
+      d.exchange.scheme = *scheme;
     else
       d.exchange.linearisation = linearisation;
     const auto world = loop::assemble(d);
@@ -130,7 +130,7 @@ TEST(SoftTool, AGraspDoesNotLetItGo) {
 
 // Each hand carries its body.
 TEST(SoftTool, ASecondHandCarriesToo) {
-  for (const char* scheme : {"partitioned", "monolithic"}) {
+  for (const char* scheme : {"partitioned", "monolithic", "single_rate"}) {
     scene::Description d = carried_block();
     d.duration_s = 0.5;
     d.gravity_m_s2 = Vec3(0, 0, -9.81);

@@ -119,7 +119,7 @@ TEST(ToolOnObstacle, NoTickIsOutsideTheConeOfFriction) {
 TEST(ToolOnObstacle, AtRestItCarriesItsWeight) {
   int checked = 0;
   for (const char* type : {"plane", "sphere", "box", "cylinder"})
-    for (const char* scheme : {"partitioned", "monolithic"})
+    for (const char* scheme : {"partitioned", "monolithic", "single_rate"})
       for (const bool mesh : {false, true}) {
         scene::Description d = ball_over(type, 2e-4);
         d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
@@ -147,7 +147,7 @@ TEST(ToolOnObstacle, AtRestItCarriesItsWeight) {
         }
         ++checked;
       }
-  EXPECT_EQ(checked, 10);
+  EXPECT_EQ(checked, 15);
 }
 
 // k pi R d^2 is the gradient of an energy: the ball leaves at its impact speed with the opposite momentum,
@@ -232,7 +232,7 @@ TEST(ToolOnObstacle, FrictionSlowsAndSpinsASlidingBall) {
 
 // A period that is long relative to the fall: contact that occurs within it is among the candidates.
 TEST(ToolOnObstacle, WhatComesWithinAPeriodIsLookedAheadFor) {
-  for (const char* scheme : {"partitioned", "monolithic"}) {
+  for (const char* scheme : {"partitioned", "monolithic", "single_rate"}) {
     scene::Description d = ball_over("plane", 0.06);  // 1 cm apart at the last query before contact
     d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
     d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.02;
@@ -297,7 +297,7 @@ TEST(ToolOnObstacle, BesideASoftBody) {
 
 // Sides are ordered internally: the order in the scene changes no bit.
 TEST(ToolOnObstacle, TheOrderOfNamesChangesNoBit) {
-  for (const char* scheme : {"partitioned", "monolithic"}) {
+  for (const char* scheme : {"partitioned", "monolithic", "single_rate"}) {
     scene::Description d = squeezed(scheme, "condensed");
     for (ContactSpec& contact : d.contacts) contact.friction = 0.3;
     const auto ticks = run(d);

@@ -82,7 +82,7 @@ double depth(const HandsFelt& both) {
 TEST(ToolsMeet, AtRestTheyCarryEachOther) {
   for (const char* first : {"sphere", "box"})
     for (const char* second : {"sphere", "box"})
-      for (const char* scheme : {"partitioned", "monolithic"}) {
+      for (const char* scheme : {"partitioned", "monolithic", "single_rate"}) {
         scene::Description d = pressed(first, second);
         d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
         d.contacts[0].quadrature_error = 1e-3;

@@ -79,10 +79,10 @@ double difference(const std::vector<loop::TickRecord>& a, const std::vector<loop
 
 // Action and reaction: nothing else holds the block, so that at rest both hands exert equal forces.
 TEST(TwoHands, PressEquallyOnAFreeBlock) {
-  for (const char* how : {"frozen", "condensed", "points", "monolithic"}) {
+  for (const char* how : {"frozen", "condensed", "points", "monolithic", "single_rate"}) {
     scene::Description d = squeezed();
-    if (std::string(how) == "monolithic")
-      d.exchange.scheme = *value_named<scene::ExchangeScheme>(how);
+    if (const auto scheme = value_named<scene::ExchangeScheme>(how))
+      d.exchange.scheme = *scheme;
     else
       d.exchange.linearisation = how;
     HandsFelt both;
@@ -101,8 +101,8 @@ TEST(TwoHands, PressEquallyOnAFreeBlock) {
 /// A ball between two hands that press and lift it.
 scene::Description hanging(const std::string& how) {
   scene::Description d = squeezed();
-  if (how == "monolithic")
-    d.exchange.scheme = *value_named<scene::ExchangeScheme>(how);
+  if (const auto scheme = value_named<scene::ExchangeScheme>(how))
+    d.exchange.scheme = *scheme;
   else
     d.exchange.linearisation = how;
   d.integrator.step_s = d.exchange.contact_refresh_s;
@@ -138,7 +138,7 @@ scene::Description hanging(const std::string& how) {
 // linearisation, and where a step of tool and block together is one linear solve.
 TEST(TwoHands, HoldByFriction) {
   const double weight = 9.81 * loop::assemble(hanging("points"))->bodies[0].masses.sum();
-  for (const char* how : {"condensed", "points", "monolithic"}) {
+  for (const char* how : {"condensed", "points", "monolithic", "single_rate"}) {
     HandsFelt both;
     run(hanging(how), both);
     double lifted[2] = {0.0, 0.0};
@@ -206,7 +206,7 @@ TEST(TwoHands, TendToOneSystem) {
 
 // The work of both hands on the block and on their tools equals the stored plus the dissipated energy.
 TEST(TwoHands, BalanceTheirEnergy) {
-  for (const char* scheme : {"partitioned", "monolithic"}) {
+  for (const char* scheme : {"partitioned", "monolithic", "single_rate"}) {
     scene::Description d = squeezed();
     d.exchange.scheme = *value_named<scene::ExchangeScheme>(scheme);
     d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 1e-3;

@@ -91,8 +91,8 @@ struct CosimulationSpec {
   /// reduction.
   double linearisation_error = 0.1;
   double exchange_period_s = 0.01;  ///< Period of exchange between tool and bodies [s].
-  /// Contact refresh period [s]: an integer fraction of the exchange period, or for
-  /// ExchangeScheme::kSingleRate the tick.
+  /// Contact refresh period [s]: an integer fraction of the exchange period, or, for
+  /// ExchangeScheme::kSingleRate, a whole number of ticks.
   double contact_refresh_s = 0.01;
   TunnellingPolicy tunnelling = TunnellingPolicy::kReport;  ///< Treatment of possible tunnelling.
   double shortest_refresh_s =
