@@ -85,7 +85,9 @@ OneAxisLoop loop_of(const scene::Description& d) {
   loop.coupling_stiffness_n_m = d.tool->coupling.stiffness_n_m;
   loop.coupling_damping_n_s_m = d.tool->coupling.damping_n_s_m;
   loop.tool_mass_kg = d.tool->mass_kg;
-  loop.tool_integrator = d.tool->integrator;
+  // With a single rate, the integrator of tool and bodies steps once per tick.
+  loop.tool_integrator =
+      d.exchange.scheme == scene::ExchangeScheme::kSingleRate ? d.integrator.name : d.tool->integrator;
   if (d.device) add_device(*d.device, loop);
   return loop;
 }

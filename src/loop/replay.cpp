@@ -9,9 +9,11 @@
 #include "device/monotone_slope.h"
 #include "loop/contact_record.h"
 #include "palpate/core/error.h"
+#include "palpate/core/workers.h"
 #include "palpate/device/registry.h"
 #include "palpate/dynamics/path.h"
 #include "palpate/scene/hands.h"
+#include "single_rate.h"
 #include "tick_group.h"
 
 namespace palpate::loop {
@@ -115,7 +117,7 @@ scene::Description tools_alone(const scene::Description& d, const std::vector<st
 }
 
 void refuse_what_cannot_be_retraced(const scene::Description& d, const HapticRecord& record) {
-  if (!d.tool || d.exchange.has_tools_in_state())
+  if (!d.tool || d.exchange.scheme == scene::ExchangeScheme::kMonolithic)
     fail(
         "replay: this run has no exchanges to replay (tool and bodies are one system, or there is no tool); "
         "change "
@@ -194,10 +196,61 @@ struct Retraced {
   ContactRecord contact{};
 };
 
+/// Tolerance for equal times, relative to a period.
+constexpr double kSamePeriod = 1e-6;
+
+/// Keeps the ticks of one hand.
+class TicksOfHand : public Observer {
+ public:
+  explicit TicksOfHand(std::size_t hand) : hand_(hand) {}
+  void tick_of(std::size_t hand, const TickRecord& tick) override {
+    if (hand == hand_) all.push_back(tick);
+  }
+  std::vector<TickRecord> all;
+
+ private:
+  std::size_t hand_;
+};
+
+/// Simulates tools and bodies again under the recorded hands, with steps from tick to tick.
+std::vector<TickRecord> retrace_single_rate(const scene::Description& description,
+                                            const std::vector<HapticRecord>& records, std::size_t hand) {
+  for (const HapticRecord& record : records) refuse_what_cannot_be_retraced(description, record);
+  const std::vector<TickRecord>& ticks = records.at(hand).ticks;
+  if (ticks.empty()) fail("replay: the record has no ticks");
+  const auto world = assemble(description, recorded_hands(records));
+  const workers::Count threads(description.integrator.threads);
+  TicksOfHand out(hand);
+  RunOptions options;
+  options.duration_s = ticks.back().time;
+  options.passivity = records[hand].passivity;
+  options.observers = {&out};
+  RunResult result;
+  BodyLoop bodies(*world, options, result);
+  std::deque<HapticLoop> loops;
+  std::vector<HapticLoop*> of_hands;
+  for (ToolInstance& tool : world->tools) of_hands.push_back(&loops.emplace_back(description, tool));
+  SingleRate single(*world, bodies, result, of_hands);
+  for (HapticLoop& loop : loops) loop.start(0.0);
+  bodies.start();
+  single.start();
+  const double period = bodies.period();
+  for (const TickRecord& tick : ticks) {
+    const double start = world->state.time();
+    single.query_if_due(start, period * (std::floor(start / period + kSamePeriod) + 1.0));
+    single.mark(tick.ramps_in, tick.left_out);
+    single.tick(start, tick.time);
+    if (!result.status.ok()) fail("replay: {}", result.status.message);
+  }
+  return std::move(out.all);
+}
+
 }  // namespace
 
 std::vector<TickRecord> retrace(const scene::Description& description,
                                 const std::vector<HapticRecord>& records, std::size_t hand) {
+  if (description.exchange.scheme == scene::ExchangeScheme::kSingleRate)
+    return retrace_single_rate(description, records, hand);
   const std::vector<std::size_t> hands = hands_with(description, hand);
   for (const std::size_t i : hands) {
     refuse_what_cannot_be_retraced(description, records.at(i));

@@ -20,10 +20,10 @@ std::vector<std::unique_ptr<device::Device>> recorded_hands(const std::vector<Ha
 bool all_paths_known(const World& world);
 
 /// Recomputes the ticks of a hand's record, each from its recorded input and contact record. No body is
-/// simulated, and of the other hands only those whose tools meet this hand's tool. Ticks of a run in real
-/// time are reproduced bitwise in virtual time.
+/// simulated, and of the other hands only those whose tools meet this hand's tool; in the single-rate scheme,
+/// tools and bodies are simulated again. Ticks of a run in real time are reproduced bitwise in virtual time.
 /// @param records  records of all hands  @param hand  in the numbering of scene::hands_of()
-/// @throws Error for a tool without separate ticks, and for a record with missing ticks
+/// @throws Error for a monolithic scene, and for a record with missing ticks
 std::vector<TickRecord> retrace(const scene::Description& description,
                                 const std::vector<HapticRecord>& records, std::size_t hand = 0);
 

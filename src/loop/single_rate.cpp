@@ -1,5 +1,7 @@
 #include "single_rate.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "monolithic_ticks.h"
@@ -9,7 +11,13 @@ namespace palpate::loop {
 
 SingleRate::SingleRate(World& world, BodyLoop& bodies, const RunResult& result,
                        std::vector<HapticLoop*> loops)
-    : world_(world), bodies_(bodies), result_(result), loops_(std::move(loops)) {
+    : world_(world),
+      bodies_(bodies),
+      result_(result),
+      loops_(std::move(loops)),
+      per_period_(whole_number(bodies.period() / world.description.tool->tick_s)),
+      tick_s_(bodies.period() / per_period_),
+      count_(std::max(1L, std::lround(bodies.duration() / tick_s_))) {
   PALPATE_CHECK(world.monolithic() && world.stepper && loops_.size() == world.tools.size(),
                 "ticks of a single rate need tools that are blocks of the State");
 }
@@ -19,6 +27,17 @@ namespace {
 /// numbers.
 constexpr double kSameQuery = 1e-9;
 }  // namespace
+
+double SingleRate::time_of(long tick) const {
+  if (tick >= count_) return bodies_.duration();
+  return bodies_.period_start(static_cast<int>(tick / per_period_)) +
+         static_cast<double>(tick % per_period_) * tick_s_;
+}
+
+void SingleRate::start() {
+  query_if_due(0.0, bodies_.period());
+  world_.stepper->prepare(tick_s_);
+}
 
 void SingleRate::query_if_due(double t, double period_end) {
   if (t < next_query_ - kSameQuery * period_end) return;

@@ -17,6 +17,14 @@ class SingleRate {
  public:
   /// @param loops  one per hand, in the numbering of scene::hands_of(); all must outlive this object
   SingleRate(World& world, BodyLoop& bodies, const RunResult& result, std::vector<HapticLoop*> loops);
+  /// Returns the number of ticks per period of contact queries.
+  int ticks_per_period() const { return per_period_; }
+  /// Returns the number of ticks of the run; the last period may have fewer than the others.
+  long count() const { return count_; }
+  /// Returns the end of a tick, counted from 1 [s].
+  double time_of(long tick) const;
+  /// Makes the first contact query of a run and prepares the stepper, after BodyLoop::start().
+  void start();
   /// Queries contact where it is due at time t: at the start of a period, and with tunnelling = "substep"
   /// when a skin may otherwise penetrate too deep (BodyLoop::next_query).
   /// @param period_end  end of the period of contact queries that t belongs to [s]
@@ -32,6 +40,9 @@ class SingleRate {
   BodyLoop& bodies_;
   const RunResult& result_;
   std::vector<HapticLoop*> loops_;
+  int per_period_;
+  double tick_s_;
+  long count_;
   double next_query_ = 0.0;  ///< [s]
   long left_out_ = 0;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -41,13 +40,11 @@ class SingleRateRealTime {
         options_(options),
         result_(result),
         out_(result.real_time.emplace()),
-        per_period_(whole_number(bodies.period() / world.description.tool->tick_s)),
-        tick_s_(bodies.period() / per_period_),
+        loops_(haptic_loops(world)),
+        ticks_(world, bodies, result, pointers_to(loops_)),
+        tick_s_(bodies.period() / ticks_.ticks_per_period()),
         tick_ns_(std::llround(1e9 * tick_s_)),
-        count_(static_cast<long>(per_period_) * bodies.periods()) {
-    std::vector<HapticLoop*> loops;
-    for (ToolInstance& tool : world.tools) loops.push_back(&loops_.emplace_back(world.description, tool));
-    ticks_.emplace(world, bodies, result, std::move(loops));
+        count_(ticks_.count()) {
     out_.tick_s = tick_s_;
     out_.period_s = bodies.period();
     out_.stall_s = device::kFallTime;
@@ -62,8 +59,7 @@ class SingleRateRealTime {
     }
     for (HapticLoop& loop : loops_) loop.start(0.0);
     bodies_.start();
-    ticks_->query_if_due(0.0, bodies_.period_start(1));
-    world_.stepper->prepare(tick_s_);
+    ticks_.start();
     const RealTimeClaim claim(out_);
     start_ns_ = now_ns() + kLead;
     tick_by_the_clock();
@@ -71,7 +67,16 @@ class SingleRateRealTime {
   }
 
  private:
-  double time_of(long tick) const { return static_cast<double>(tick) * tick_s_; }
+  static std::deque<HapticLoop> haptic_loops(World& world) {
+    std::deque<HapticLoop> out;
+    for (ToolInstance& tool : world.tools) out.emplace_back(world.description, tool);
+    return out;
+  }
+  static std::vector<HapticLoop*> pointers_to(std::deque<HapticLoop>& loops) {
+    std::vector<HapticLoop*> out;
+    for (HapticLoop& loop : loops) out.push_back(&loop);
+    return out;
+  }
 
   void tick_by_the_clock() {
     std::int64_t woke_before = start_ns_;
@@ -85,14 +90,16 @@ class SingleRateRealTime {
       const long left_out = late > kStall ? behind : 0;  // the clock is restarted
       start_ns_ += left_out * tick_ns_;
       const long skipped = left_out > 0 ? 0 : std::min(behind, count_ - next);
-      ticks_->mark(woke - std::exchange(woke_before, woke) > tick_ns_ + kStall, left_out);
-      ticks_->tick(time_of(done), time_of(next + skipped));
+      ticks_.mark(woke - std::exchange(woke_before, woke) > tick_ns_ + kStall, left_out);
+      ticks_.tick(ticks_.time_of(done), ticks_.time_of(next + skipped));
       if (bodies_.ended()) return;
       note(late, left_out, skipped, now_ns() - woke);
-      const bool closes = (next + skipped) / per_period_ > done / per_period_;
-      done = next + skipped;
-      if (closes) bodies_.close_period(time_of(done));
-      if (done < count_) ticks_->query_if_due(time_of(done), time_of((done / per_period_ + 1) * per_period_));
+      const int per_period = ticks_.ticks_per_period();
+      const long before = std::exchange(done, next + skipped);
+      const bool closes = done / per_period > before / per_period || done == count_;
+      const double now = ticks_.time_of(done);
+      if (closes) bodies_.close_period(now);
+      if (done < count_) ticks_.query_if_due(now, ticks_.time_of((done / per_period + 1) * per_period));
     }
   }
 
@@ -112,8 +119,7 @@ class SingleRateRealTime {
   RunResult& result_;
   RealTimeResult& out_;
   std::deque<HapticLoop> loops_;
-  std::optional<SingleRate> ticks_;
-  int per_period_;  ///< Ticks per period.
+  SingleRate ticks_;
   double tick_s_;
   std::int64_t tick_ns_, start_ns_ = 0;
   long count_;

@@ -10,6 +10,7 @@ VirtualTime::VirtualTime(World& world, BodyLoop& bodies, const RunOptions& optio
   for (Hand& hand : hands_) hand.haptic_loop.start(0.0);
   bodies.restart_path();
   bodies.start();
+  if (single_) single_->start();
 }
 
 VirtualTime::VirtualTime(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result,
@@ -56,7 +57,7 @@ void VirtualTime::end() {
 }
 
 void VirtualTime::one_period(double t0, double t1) {
-  if (single_) return tick_everything(t0, t1);
+  if (single_) return tick_everything(t1);
   bodies_.query();
   // Ticks use the contact found before them, so they stop where the next query is due.
   for (double t = t0, next;; t = next) {
@@ -71,12 +72,13 @@ void VirtualTime::one_period(double t0, double t1) {
 }
 
 /// Runs the ticks of a period of the single-rate scheme.
-void VirtualTime::tick_everything(double t0, double t1) {
-  const int ticks = whole_number((t1 - t0) / world_.description.tool->tick_s);
-  const auto start = [&](int i) { return i == ticks ? t1 : t0 + i * (t1 - t0) / ticks; };
-  for (int i = 0; i < ticks && result_.status.ok(); ++i) {
-    single_->query_if_due(start(i), t1);
-    single_->tick(start(i), start(i + 1));
+void VirtualTime::tick_everything(double t1) {
+  const long first = static_cast<long>(periods_) * single_->ticks_per_period(),
+             last =
+                 periods_ + 1 == bodies_.periods() ? single_->count() : first + single_->ticks_per_period();
+  for (long i = first; i < last && result_.status.ok(); ++i) {
+    single_->query_if_due(single_->time_of(i), t1);
+    single_->tick(single_->time_of(i), i + 1 == last ? t1 : single_->time_of(i + 1));
   }
 }
 

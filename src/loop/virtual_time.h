@@ -42,7 +42,7 @@ class VirtualTime {
   void make_hands();
   void one_period(double t0, double t1);
   void tick_tools(double t0, double t1);
-  void tick_everything(double t0, double t1);
+  void tick_everything(double t1);
   void adopt(Hand& hand, const ContactRecord& record);
   /// Returns the record in force at a hand's next tick.
   const ContactRecord& record_of(Hand& hand);

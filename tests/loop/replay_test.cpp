@@ -232,6 +232,21 @@ TEST(Replay, AnotherCouplingFollowsTheSameHand) {
   EXPECT_LT(off, 1e-3 * peak(truth.ticks));
 }
 
+// One system, simulated again with the recorded lengths of the ticks: in real time as well, where a late tick
+// covers several.
+TEST(Replay, RetracesASingleRate) {
+  scene::Description d = pressed();
+  d.exchange.scheme = scene::ExchangeScheme::kSingleRate;
+  for (const bool real_time : {false, true}) {
+    const loop::HapticRecord record = recorded(d, real_time, "single.h5");
+    const auto retraced = loop::retrace(d, {record});
+    ASSERT_EQ(retraced.size(), record.ticks.size());
+    EXPECT_GT(peak(record.ticks), 0.1);
+    for (std::size_t i = 0; i < retraced.size(); ++i)
+      ASSERT_EQ(retraced[i].device.force, record.ticks[i].device.force) << real_time << ", tick " << i;
+  }
+}
+
 std::string refusal(const scene::Description& d, const loop::HapticRecord& record) {
   try {
     loop::retrace(d, {record});

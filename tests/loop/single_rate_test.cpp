@@ -86,6 +86,25 @@ TEST(SingleRate, RunsEveryIntegrator) {
   }
 }
 
+// A duration that is no multiple of the period ends with a shorter period.
+TEST(SingleRate, EndsAtTheDuration) {
+  scene::Description d = press(Scheme::kSingleRate);
+  d.duration_s = 0.0345;
+  for (const bool real_time : {false, true}) {
+    const auto world = loop::assemble(d);
+    Ticks ticks;
+    loop::RunOptions options;
+    options.real_time = real_time;
+    options.observers = {&ticks};
+    const loop::RunResult result = loop::run(*world, options);
+    ASSERT_TRUE(result.status.ok()) << result.status.message;
+    EXPECT_EQ(result.periods, 4);
+    EXPECT_EQ(world->state.time(), 0.0345);
+    EXPECT_EQ(ticks.all.back().time, 0.0345);
+    EXPECT_LE(ticks.all.size(), 35u);
+  }
+}
+
 /// Hand without a path known in advance, which jumps at one tick.
 class Jumps : public device::Device {
  public:
