@@ -10,7 +10,7 @@
 #include "core/time_text.h"
 #include "loop/registries.h"
 #include "session/command_line.h"
-#include "session/monolithic_remarks.h"
+#include "session/reference_remarks.h"
 #include "session/run_files.h"
 
 namespace palpate::cli {
@@ -81,10 +81,11 @@ void print_outcome(const loop::World& world, const session::RunOutput& ran, cons
   if (options.checkpoint_every_s > 0.0) print_checkpoints(ran.checkpoints, options.checkpoint_every_s);
 }
 
-void print_against_monolithic(const loop::World& world, const session::RunOutput& ran) {
-  if (!ran.against) return;
-  for (const std::string& line : session::monolithic_remarks(world.description, *ran.against))
-    fmt::print("{}\n", line);
+void print_against_references(const loop::World& world, const session::RunOutput& ran) {
+  for (const auto& against : {ran.against, ran.against_every_tick})
+    if (against)
+      for (const std::string& line : session::reference_remarks(world.description, *against))
+        fmt::print("{}\n", line);
 }
 
 void print_files(const loop::World& world, const session::RunOutput& ran) {

@@ -9,8 +9,8 @@ namespace palpate::cli {
 /// the remarks, and the cost of checkpoints.
 void print_outcome(const loop::World& world, const session::RunOutput& ran, const session::Options& options);
 
-/// Prints the error of the wrench on each hand against the monolithic solution, if it was computed.
-void print_against_monolithic(const loop::World& world, const session::RunOutput& ran);
+/// Prints the error of the wrench on each hand against the references that were computed.
+void print_against_references(const loop::World& world, const session::RunOutput& ran);
 
 /// Prints the names of the files, and why states or all files were not written.
 void print_files(const loop::World& world, const session::RunOutput& ran);

@@ -35,8 +35,8 @@ int run_to_end(const session::Options& options, const scene::Description& descri
   RunSession run(options, description, resumption);
   with_progress("running " + short_name(description), run, &RunSession::simulate);
   print_outcome(run.world(), run.output(), options);
-  with_progress("computing the monolithic solution", run, &RunSession::compare_with_monolithic);
-  print_against_monolithic(run.world(), run.output());
+  with_progress("computing the reference", run, &RunSession::compare_with_references);
+  print_against_references(run.world(), run.output());
   run.write_results();
   print_files(run.world(), run.output());
   with_progress("drawing frames", run, &RunSession::draw_frames);

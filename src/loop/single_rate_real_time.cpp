@@ -45,8 +45,7 @@ class SingleRateRealTime {
         tick_s_(bodies.period() / ticks_.ticks_per_period()),
         tick_ns_(std::llround(1e9 * tick_s_)),
         count_(ticks_.count()) {
-    out_.tick_s = tick_s_;
-    out_.period_s = bodies.period();
+    out_.tick_s = out_.period_s = tick_s_;
     out_.stall_s = device::kFallTime;
     for (std::vector<float>* series : {&out_.lateness_s, &out_.work_s, &out_.latency_s})
       series->reserve(static_cast<std::size_t>(count_));

@@ -89,7 +89,7 @@ py::dict run_to_end(const session::Options& options, const scene::Description& d
   without_gil([&](const session::Callbacks& callbacks) {
     run = std::make_unique<session::RunSession>(options, description, resumption);
     run->simulate(callbacks);
-    run->compare_with_monolithic(callbacks);
+    run->compare_with_references(callbacks);
     run->write_results();
     if (!run->output().result.stopped) run->draw_frames(callbacks);  // Ctrl-C returns without delay
   });

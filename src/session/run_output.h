@@ -35,8 +35,10 @@ struct RunOutput {
   std::vector<std::string> remarks;  ///< Lines of run_remarks()
   std::optional<TracedSteps> trace;  ///< Only of a traced run
   loop::CheckpointCost checkpoints;
-  std::optional<compare::AgainstMonolithic> against;  ///< Set if the run was compared
-  std::optional<DrawnFrames> frames;                  ///< Set if frames were requested
+  std::optional<compare::AgainstReference> against;  ///< Set if the run was compared
+  /// Set if ticks of a single-rate run in real time were skipped
+  std::optional<compare::AgainstReference> against_every_tick;
+  std::optional<DrawnFrames> frames;  ///< Set if frames were requested
   MissingOutputs missing;
 
   /// Returns whether the whole duration was simulated.

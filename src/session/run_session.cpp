@@ -93,7 +93,7 @@ void RunSession::attach_observers(const PictureOptions& pictures) {
     observers_.push_back(&*recorder_);
   }
   if (options_.trace) trace_.emplace(*world_, path("trace.csv"));
-  if (options_.against_monolithic) observers_.push_back(&memory_);
+  if (options_.against_monolithic || may_skip_ticks()) observers_.push_back(&memory_);
 }
 
 void RunSession::simulate(const Callbacks& callbacks) {
@@ -143,6 +143,23 @@ void RunSession::compare_with_monolithic(const Callbacks& callbacks) {
     ran_.missing.add("error against the monolithic solution", ran_.against->trouble);
 }
 
+bool RunSession::may_skip_ticks() const {
+  return options_.real_time && description_.exchange.scheme == scene::ExchangeScheme::kSingleRate;
+}
+
+void RunSession::compare_with_every_tick(const Callbacks& callbacks) {
+  if (!may_skip_ticks() || !ran_.is_complete() || ran_.result.real_time->skipped_ticks == 0) return;
+  ran_.against_every_tick =
+      compare::against_every_tick(*world_, memory_.records(), callbacks.progress, callbacks.stop);
+  if (!ran_.against_every_tick->stopped && !ran_.against_every_tick->trouble.empty())
+    ran_.missing.add("error of skipped ticks", ran_.against_every_tick->trouble);
+}
+
+void RunSession::compare_with_references(const Callbacks& callbacks) {
+  compare_with_monolithic(callbacks);
+  compare_with_every_tick(callbacks);
+}
+
 void RunSession::write_results() {
   if (ran_.folder.empty()) return;
   write_summary(*world_, ran_, options_);
@@ -160,7 +177,7 @@ void RunSession::draw_frames(const Callbacks& callbacks) {
 
 void RunSession::run(const Callbacks& callbacks) {
   simulate(callbacks);
-  compare_with_monolithic(callbacks);
+  compare_with_references(callbacks);
   write_results();
   draw_frames(callbacks);
 }

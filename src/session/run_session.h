@@ -40,8 +40,9 @@ class RunSession {
   /// integrator is a result, see failure().
   /// @throws Error if data cannot be written; the summary then has its message
   void simulate(const Callbacks& callbacks = {});
-  /// Computes the monolithic solution and the error against it, if requested and if the run is complete.
-  void compare_with_monolithic(const Callbacks& callbacks = {});
+  /// Computes the error of a complete run: against the monolithic solution, if requested, and against the
+  /// same scene in virtual time, if a run in real time skipped ticks.
+  void compare_with_references(const Callbacks& callbacks = {});
   /// Writes summary, pictures and page, and removes the checkpoint of a complete run.
   void write_results();
   /// Draws frames and movie, if requested. The frames of a stopped run are drawn, too.
@@ -57,6 +58,9 @@ class RunSession {
   std::string failure() const;
 
  private:
+  bool may_skip_ticks() const;
+  void compare_with_monolithic(const Callbacks& callbacks);
+  void compare_with_every_tick(const Callbacks& callbacks);
   void assemble();
   void prepare_checkpoints();
   void open_folder();

@@ -145,6 +145,14 @@ class Schema(Cli):
         figures = take("run", "press-ball", "--duration-s", "0.1", "--realtime",
                        *change("integrator.name=cvode-bdf"))
         self.assertEqual(figures["real_time"]["ticks_timed"], figures["hands"][0]["ticks"])
+        # a step takes longer than such a tick
+        figures = take("run", "press-ball", "--duration-s", "0.05", "--realtime",
+                       *change("exchange.scheme=single_rate", "tool.tick_s=2e-5"))
+        self.assertEqual(figures["options"]["exchange_scheme"], "single_rate")
+        self.assertGreater(figures["real_time"]["skipped_ticks"], 0)
+        (error,) = figures["against_virtual_time"]
+        self.assertEqual(error["hand"], "tool")
+        self.assertLess(error["force_error_rms_of_peak"], 0.1)
         take("run", "press-ball", "--duration-s", "0.05", "--checkpoint-every", "0.02")
         take("run", "one-tet", "--duration-s", "0.05")
         take("stability", "--haptic", "press-ball")

@@ -91,7 +91,10 @@ scene::Kinds make() {
       {.table = "contact", .selector = "spring", .kinds = named({"linear"})},
       {.table = "exchange",
        .selector = "scheme",
-       .kinds = {{"partitioned", part_keys({"linearisation", "linearisation_error"})}, {"monolithic"}},
+       .kinds = {{"partitioned", part_keys({"linearisation", "linearisation_error", "exchange_period_s",
+                                            "contact_refresh_s", "latency_ticks"})},
+                 {"monolithic", part_keys({"exchange_period_s", "contact_refresh_s"})},
+                 {"single_rate", part_keys({"exchange_period_s", "contact_refresh_s"})}},
        .default_kind = [](const Description&) { return scene::CosimulationSpec{}.scheme; }},
       mesh_kinds("body.mesh", kinds_of(mesh::tet_generators()))};
   for (const char* table : {"tool.mesh", "hand.tool.mesh"})

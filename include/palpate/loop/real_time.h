@@ -31,7 +31,8 @@ struct RealTimeResult {
   long unrecorded_ticks = 0;   ///< Ticks that did not fit into the recorder's queue.
   /// Returns the rate of the bodies, contact included [1/s].
   double exchanges_per_s() const {
-    const double lasted = tick_s * static_cast<double>(lateness_s.size());
+    const double lasted =
+        tick_s * (static_cast<double>(lateness_s.size()) + static_cast<double>(skipped_ticks));
     return lasted > 0.0 ? static_cast<double>(latency_s.size()) / lasted : 0.0;
   }
   /// Returns the simulated time in which the bodies were held [s].

@@ -9,7 +9,8 @@ namespace palpate::compare {
 /// Run of the scene with one parameter changed.
 struct HapticPoint {
   /// Parameter that differs: "exchange period", "exchange alone" (exchange period with a tick of a tenth of
-  /// it, all else as in the reference), "tick", "pixels", "element size", "integrator", "linearisation".
+  /// it, all else as in the reference), "tick", "pixels", "element size", "integrator",
+  /// "scheme", "linearisation".
   std::string variable;
   std::string value;     ///< Its value as text: "10 ms", "cvode-bdf".
   double setting = 0.0;  ///< Its value, where it is a number; else NaN.

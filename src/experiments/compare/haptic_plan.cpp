@@ -11,6 +11,7 @@
 #include "experiments/median.h"
 #include "loop/registries.h"
 #include "palpate/core/error.h"
+#include "palpate/core/named_enum.h"
 #include "palpate/loop/load.h"
 #include "scene/contact_sides.h"
 
@@ -231,7 +232,6 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
 MonolithicScene monolithic_scene(const Description& d, double coarser) {
   std::vector<std::string> overrides = monolithic_overrides(d, coarser);
   overrides.push_back(assign("exchange.scheme", std::string("monolithic")));
-  if (d.exchange.latency_ticks > 0) overrides.push_back("exchange.latency_ticks=0");
   MonolithicScene out{coarser > 1.0 ? with_overrides(d, overrides) : as_tight_as_the_reference(d, overrides),
                       ""};
   const IntegratorSpec& made = out.description.integrator;
@@ -248,15 +248,21 @@ std::vector<HapticPoint> plan_haptic(const Description& d, const std::vector<std
   const scene::HapticCompareSpec& h = d.compare.haptic;
   const scene::CosimulationSpec& x = d.exchange;
   Plan plan(d);
-  plan.add_numbers(kPeriod, h.exchange_periods_s, x.exchange_period_s, true, milliseconds,
-                   [&](double v) { return period_overrides(v, x.contact_refresh_s); });
-  plan.add_numbers(kAlone, h.exchange_periods_s, 0.0, true, milliseconds,
-                   [&](double v) { return alone_overrides(d, v); });
+  const bool exchanges = x.scheme == scene::ExchangeScheme::kPartitioned;
+  if (exchanges) {
+    plan.add_numbers(kPeriod, h.exchange_periods_s, x.exchange_period_s, true, milliseconds,
+                     [&](double v) { return period_overrides(v, x.contact_refresh_s); });
+    plan.add_numbers(kAlone, h.exchange_periods_s, 0.0, true, milliseconds,
+                     [&](double v) { return alone_overrides(d, v); });
+  }
   plan.add_numbers(kTick, h.ticks_s, d.tool->tick_s, true, milliseconds,
                    [](double v) { return std::vector{assign("tool.tick_s", v)}; });
   add_resolution(plan, d);
   plan.add_names(kIntegrator, integrators.empty() ? h.integrators : integrators, d.integrator.name,
                  [](const std::string& v) { return std::vector{assign("integrator.name", v)}; });
+  plan.add_names(kScheme, {"partitioned", "single_rate"}, std::string(name_of(x.scheme)),
+                 [](const std::string& v) { return std::vector{assign("exchange.scheme", v)}; });
+  if (!exchanges) return plan.points;
   plan.add_names(
       kLinearisation, h.linearisations.empty() ? texts_of("exchange", "linearisation") : h.linearisations,
       x.linearisation, [](const std::string& v) { return std::vector{assign("exchange.linearisation", v)}; });

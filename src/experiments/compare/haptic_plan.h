@@ -10,11 +10,13 @@ inline constexpr const char* kTick = "tick";
 inline constexpr const char* kPixels = "pixels";
 inline constexpr const char* kElement = "element size";
 inline constexpr const char* kIntegrator = "integrator";
+inline constexpr const char* kScheme = "scheme";
 inline constexpr const char* kLinearisation = "linearisation";
 
 /// Returns all points of a scene, variable by variable, each with its description; a point that the loader
 /// rejects has status kRefused.  The scene's value is one point of exchange period, tick, element
-/// size, integrator and linearisation.
+/// size, integrator, scheme and linearisation. A single-rate scene has no points of exchange period, exchange
+/// alone and linearisation.
 /// @param integrators  replaces the scene's list; empty: the list
 std::vector<HapticPoint> plan_haptic(const scene::Description& description,
                                      const std::vector<std::string>& integrators);

@@ -47,19 +47,20 @@ void refuse_against_monolithic(const scene::Description& d) {
     fail("{}: exchange.scheme = \"monolithic\" is the reference itself; use \"partitioned\"", d.path);
 }
 
-AgainstMonolithic against_monolithic(const loop::World& run, const std::vector<loop::HapticRecord>& records,
-                                     bool real_time, const std::function<void(double)>& progress,
-                                     const std::atomic<bool>* stop) {
-  const scene::Description& d = run.description;
-  refuse_against_monolithic(d);
-  const MonolithicScene whole = monolithic_scene(d);
-  AgainstMonolithic out;
-  out.made_by = whole.made_by;
-  out.recorded_hand = real_time || !loop::all_paths_known(run);
+namespace {
+
+/// Simulates the reference and compares the forces of the run with it.
+/// @param recorded_hand  whether the recorded hands replace those of the scene
+AgainstReference against(const MonolithicScene& reference, bool recorded_hand,
+                         const std::vector<loop::HapticRecord>& records,
+                         const std::function<void(double)>& progress, const std::atomic<bool>* stop) {
+  AgainstReference out;
+  out.made_by = reference.made_by;
+  out.recorded_hand = recorded_hand;
   try {
     if (records.empty() || records.front().ticks.empty()) fail("the run has no ticks");
-    const auto world = out.recorded_hand ? loop::assemble(whole.description, loop::recorded_hands(records))
-                                         : loop::assemble(whole.description);
+    const auto world = recorded_hand ? loop::assemble(reference.description, loop::recorded_hands(records))
+                                     : loop::assemble(reference.description);
     EachHand felt(records.size());
     loop::RunOptions options;
     options.duration_s = records.front().ticks.back().time;
@@ -70,7 +71,7 @@ AgainstMonolithic against_monolithic(const loop::World& run, const std::vector<l
     out.cpu_s = result.cpu_s;
     out.stopped = result.stopped;
     if (!result.status.ok())
-      fail("{} failed at t = {:g} s: {}", whole.description.integrator.name, result.status.t,
+      fail("{} failed at t = {:g} s: {}", reference.description.integrator.name, result.status.t,
            result.status.message);
     if (result.stopped) fail("stopped at t = {:g} s", result.time);
     static_cast<HandError&>(out) = hand_error(hand_series(records.front()), felt.of(0));
@@ -78,6 +79,23 @@ AgainstMonolithic against_monolithic(const loop::World& run, const std::vector<l
       out.more_hands.push_back(hand_error(hand_series(records[i]), felt.of(i)));
   } catch (const Error& e) { out.trouble = e.what(); }
   return out;
+}
+
+}  // namespace
+
+AgainstReference against_monolithic(const loop::World& run, const std::vector<loop::HapticRecord>& records,
+                                    bool real_time, const std::function<void(double)>& progress,
+                                    const std::atomic<bool>* stop) {
+  refuse_against_monolithic(run.description);
+  return against(monolithic_scene(run.description), real_time || !loop::all_paths_known(run), records,
+                 progress, stop);
+}
+
+AgainstReference against_every_tick(const loop::World& run, const std::vector<loop::HapticRecord>& records,
+                                    const std::function<void(double)>& progress,
+                                    const std::atomic<bool>* stop) {
+  return against({run.description, "the same scene in virtual time, which skips no tick"}, true, records,
+                 progress, stop);
 }
 
 }  // namespace palpate::compare

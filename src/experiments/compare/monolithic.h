@@ -35,9 +35,9 @@ struct HandError {
   double peak_force_n = 0.0, peak_torque_n_m = 0.0;  ///< Peaks of the reference.
 };
 
-/// Result of comparing a completed run with its monolithic solution under the same hand motion; the inherited
-/// members refer to the first hand.
-struct AgainstMonolithic : HandError {
+/// Result of comparing a completed run with a reference under the same hand motion; the inherited members
+/// refer to the first hand.
+struct AgainstReference : HandError {
   std::string made_by;  ///< Description of the reference.
   /// The reference was driven by the recorded hands instead of the scene's prescribed paths.
   bool recorded_hand = false;
@@ -52,9 +52,14 @@ struct AgainstMonolithic : HandError {
 /// @param records  records of each hand
 /// @param real_time  whether the run was in real time
 /// @throws Error as refuse_against_monolithic()
-AgainstMonolithic against_monolithic(const loop::World& world, const std::vector<loop::HapticRecord>& records,
-                                     bool real_time, const std::function<void(double)>& progress,
-                                     const std::atomic<bool>* stop);
+AgainstReference against_monolithic(const loop::World& world, const std::vector<loop::HapticRecord>& records,
+                                    bool real_time, const std::function<void(double)>& progress,
+                                    const std::atomic<bool>* stop);
+/// Repeats a run in real time in virtual time, with the recorded hands and all ticks: the error that skipped
+/// ticks caused.
+AgainstReference against_every_tick(const loop::World& world, const std::vector<loop::HapticRecord>& records,
+                                    const std::function<void(double)>& progress,
+                                    const std::atomic<bool>* stop);
 /// Checks that a scene has a monolithic counterpart.  @throws Error for a scene without a tool or without
 /// bodies, and for one that is monolithic itself
 void refuse_against_monolithic(const scene::Description& description);

@@ -23,15 +23,15 @@ store::SummaryFields error_row(const std::string& hand, const HandError& felt) {
 }  // namespace
 
 void add_to_summary(store::Summary& summary, const scene::Description& description,
-                    const AgainstMonolithic& against) {
-  store::SummaryFields& reference = summary.section("monolithic_reference").values;
+                    const AgainstReference& against, const std::string& name) {
+  store::SummaryFields& reference = summary.section(name + "_reference").values;
   reference = {{"made_by", against.made_by}, {"cpu_s", against.cpu_s}};
   if (!against.trouble.empty()) {
     reference.emplace_back("trouble", against.trouble);
     return;
   }
   const std::vector<scene::Hand> hands = scene::hands_of(description);
-  std::vector<store::SummaryFields>& rows = summary.list("against_monolithic");
+  std::vector<store::SummaryFields>& rows = summary.list("against_" + name);
   rows.push_back(error_row(hands[0].name, against));
   for (std::size_t i = 0; i < against.more_hands.size(); ++i)
     rows.push_back(error_row(hands[i + 1].name, against.more_hands[i]));

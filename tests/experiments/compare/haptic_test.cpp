@@ -140,10 +140,11 @@ TEST(Haptic, EveryVariableHasTheScenesOwnOnceAndEveryName) {
     own[p.variable] += p.own;
     EXPECT_TRUE(values[p.variable].insert(p.value).second) << p.variable << ": " << p.value << " twice";
   }
-  for (const char* variable : {"exchange period", "tick", "integrator", "linearisation"})
+  for (const char* variable : {"exchange period", "tick", "integrator", "scheme", "linearisation"})
     EXPECT_EQ(own[variable], 1) << variable;
   EXPECT_EQ(own["exchange alone"], 0);
   EXPECT_EQ(values["integrator"], (std::set<std::string>{"cvode-bdf", "linearly-implicit-euler"}));
+  EXPECT_TRUE(values["scheme"].contains("single_rate"));
   for (const char* name : {"condensed", "frozen"}) EXPECT_TRUE(values["linearisation"].contains(name));
   EXPECT_FALSE(values.contains("pixels")) << "a sphere's gaps are exact";
   EXPECT_FALSE(values.contains("element size")) << "nobody asked for it";
@@ -272,7 +273,7 @@ TEST(Haptic, GoesOnFromItsDatabaseAndWritesOneRowAPoint) {
   const HapticComparison first = compare_here(d, options);
   EXPECT_EQ(first.reused, 0);
   const HapticComparison again = compare_here(d, options);
-  EXPECT_EQ(again.reused, 2 + 4) << "reference, check, the scene's own, two alone, frozen";
+  EXPECT_EQ(again.reused, 2 + 5) << "reference, check, the scene's own, two alone, single-rate, frozen";
   EXPECT_EQ(own_point(again).error.force_rms_n, own_point(first).error.force_rms_n);
   compare::write(again, folder.string());
   const store::CsvTable table = store::read_csv((folder / "haptic.csv").string());
@@ -306,7 +307,7 @@ TEST(Haptic, StopsAtOnceWhenAsked) {
 }
 
 /// Runs the faulty scene and compares it with the monolithic solution of the scene without the fault.
-compare::AgainstMonolithic against(const scene::Description& faulty, bool real_time = false) {
+compare::AgainstReference against(const scene::Description& faulty, bool real_time = false) {
   const auto world = loop::assemble(faulty);
   loop::HapticMemory memory;
   loop::RunOptions options;
@@ -317,7 +318,7 @@ compare::AgainstMonolithic against(const scene::Description& faulty, bool real_t
 }
 
 TEST(Haptic, ARunIsHeldAgainstItsOwnSceneAsOneSystem) {
-  const compare::AgainstMonolithic good = against(press());
+  const compare::AgainstReference good = against(press());
   EXPECT_EQ(good.trouble, "");
   EXPECT_FALSE(good.recorded_hand);
   EXPECT_NEAR(good.error.force_rms_n, own_point(measured()).error.force_rms_n, 1e-6);
@@ -325,14 +326,14 @@ TEST(Haptic, ARunIsHeldAgainstItsOwnSceneAsOneSystem) {
   EXPECT_LT(good.error.force_rms_n, 0.05 * good.peak_force_n);
   for (const char* fault :
        {"tool.coupling.damping_n_s_m=1.0", "contact.0.stiffness_pa_m=2e6", "tool.mass_kg=0.1"}) {
-    const compare::AgainstMonolithic bad = against(press({fault}));
+    const compare::AgainstReference bad = against(press({fault}));
     EXPECT_GT(bad.error.force_rms_n, 1.5 * good.error.force_rms_n) << fault;
   }
 }
 
 // The recorded hand, tick by tick, equals the scripted one to well within the measured error.
 TEST(Haptic, ARealTimeRunIsHeldByItsRecordedHand) {
-  const compare::AgainstMonolithic script = against(press()), recorded = against(press(), true);
+  const compare::AgainstReference script = against(press()), recorded = against(press(), true);
   EXPECT_EQ(recorded.trouble, "");
   EXPECT_TRUE(recorded.recorded_hand);
   EXPECT_NEAR(recorded.error.force_rms_n, script.error.force_rms_n, 0.02 * script.error.force_rms_n);

@@ -1,4 +1,4 @@
-#include "session/monolithic_remarks.h"
+#include "session/reference_remarks.h"
 
 #include <fmt/format.h>
 
@@ -24,8 +24,8 @@ void add_lines(const std::string& whose, const compare::HandError& felt, std::ve
 
 }  // namespace
 
-std::vector<std::string> monolithic_remarks(const scene::Description& description,
-                                            const compare::AgainstMonolithic& against) {
+std::vector<std::string> reference_remarks(const scene::Description& description,
+                                           const compare::AgainstReference& against) {
   std::vector<std::string> out;
   if (!against.trouble.empty() || against.stopped) return out;
   const std::string what = fmt::format("against {}{}: ", against.made_by,
