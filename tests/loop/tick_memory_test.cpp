@@ -10,7 +10,6 @@
 #include "palpate/dynamics/linearised_contact.h"
 #include "palpate/loop/run.h"
 #include "pressing_hand.h"
-#include "tool_in_step.h"
 
 namespace {
 
@@ -84,35 +83,7 @@ long allocations_on_floor(bool mesh) {
   EXPECT_GT(out.contact.force.z(), 0.1);
   return taken;
 }
-
-/// Allocations in 20 steps of a tool and a block as one system, between two contact queries.
-long allocations_in_steps_with_tool(const std::string& solver) {
-  scene::Description d = tool_in_step::pressed();
-  d.integrator.linear_solver = solver;
-  d.integrator.linear_rtol = 1e-4;
-  const auto world = loop::assemble(d);
-  loop::RunOptions options;
-  options.duration_s = 0.03;
-  EXPECT_TRUE(loop::run(*world, options).status.ok());
-  const auto step = [&](int k) { return world->stepper->advance_to(0.03 + 1e-3 * k).ok(); };
-  bool ok = step(1) && step(2);
-  const long before = malloc_calls;
-  for (int k = 3; k <= 22; ++k) ok = step(k) && ok;
-  const long taken = malloc_calls - before;
-  EXPECT_TRUE(ok);
-  EXPECT_GT(world->stepper->counters().solver.lagged, 20);
-  return taken;
-}
 #endif
-
-TEST(RealTime, AStepWithTheToolTakesNoMemory) {
-#if PALPATE_CAN_COUNT
-  for (const char* solver : {"pcg-single", "pcg-two-level", "auto"})
-    EXPECT_EQ(allocations_in_steps_with_tool(solver), 0) << solver;
-#else
-  GTEST_SKIP() << "a sanitizer owns malloc: nothing can be counted here";
-#endif
-}
 
 TEST(RealTime, ATickOnAnObstacleTakesNoMemory) {
 #if PALPATE_CAN_COUNT

@@ -128,7 +128,11 @@ void PointOperator::order_rows(double scale) {
     if (border_ > 0) {
       const Eigen::Map<const Eigen::Matrix3Xd> B(double_border_[r * static_cast<std::size_t>(border_)].data(),
                                                  3, border_);
-      all -= (B * S_inverse_ * B.transpose()).cast<float>();
+      Mat3 eliminated = Mat3::Zero();
+      for (Eigen::Index c = 0; c < border_; ++c)
+        for (Eigen::Index k = 0; k < border_; ++k)
+          eliminated.noalias() += S_inverse_(k, c) * B.col(k) * B.col(c).transpose();
+      all -= eliminated.cast<float>();
     }
     diagonal_.push_back({places[r], all});
   }

@@ -42,7 +42,7 @@ class Refinement {
 
  private:
   /// Iterates corrections until the error is within the tolerance.
-  dynamics::SolveStatus approach(dynamics::ResidualFunction& equations, VecX& x);
+  dynamics::SolveStatus approach(dynamics::ResidualFunction& equations, int most_residuals, VecX& x);
   /// Evaluates residual_ = b - A x.
   void evaluate_residual(dynamics::ResidualFunction& equations, VecX& x);
   /// Sets the right-hand side of the copy's system, b = residual_ + Ao x.
