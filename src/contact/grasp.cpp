@@ -224,7 +224,8 @@ void Bonds::apply_tangent(const dynamics::StateView& state, const std::vector<Fr
 }
 
 void Bonds::add_points(const dynamics::StateView& state, const std::vector<FrameState>& frames,
-                       double k_scale, double d_scale, dynamics::PointStiffness& C) const {
+                       double k_scale, double d_scale, dynamics::PointStiffness& C,
+                       dynamics::SparseBorder& border) const {
   for (const Bond& bond : bonds_) {
     const BondForce b = force(bond, state, frames);
     dynamics::PointStiffness::OfPoint point;
@@ -236,6 +237,18 @@ void Bonds::add_points(const dynamics::StateView& state, const std::vector<Frame
     point.nodes.count = bond.held.count;
     point.C = k_scale * b.K + d_scale * b.D;
     C.points.push_back(point);
+    const int offset = frames[static_cast<std::size_t>(bond.frame)].u_offset;
+    if (offset < 0) continue;
+    const int at = offset - state.layout->nodal_size;
+    const Mat36 Z = at_held(b.arm);
+    const Vec3 F = k_scale * b.elastic;
+    for (int i = 0; i < bond.held.count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      dynamics::SparseBorder::Entry& entry = border.at(bond.held.node[k], at);
+      entry.right += bond.held.weight[k] * by_frame(point.C, F, Z);
+      entry.bottom += bond.held.weight[k] * by_held(point.C, F, Z);
+    }
+    border.corner.block<6, 6>(at, at) += Z.transpose() * point.C * Z + turning_part(F, b.arm);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "palpate/contact/tie.h"
 #include "palpate/core/archive.h"
 #include "palpate/dynamics/point_stiffness.h"
+#include "palpate/dynamics/sparse_border.h"
 
 namespace palpate::contact {
 
@@ -79,8 +80,9 @@ class Bonds {
                    double d_scale, dynamics::BorderedMatrix& A) const;
   void apply_tangent(const dynamics::StateView& state, const std::vector<FrameState>& frames, double k_scale,
                      double d_scale, const VecX& x, VecX& y) const;
+  /// Adds the tangent to a PointStiffness and, for frames in the State, to a SparseBorder.
   void add_points(const dynamics::StateView& state, const std::vector<FrameState>& frames, double k_scale,
-                  double d_scale, dynamics::PointStiffness& C) const;
+                  double d_scale, dynamics::PointStiffness& C, dynamics::SparseBorder& border) const;
   double energy(const dynamics::StateView& state, const std::vector<FrameState>& frames) const;
   double dissipation(const dynamics::StateView& state, const std::vector<FrameState>& frames) const;
   Wrench wrench(const dynamics::StateView& state, const std::vector<FrameState>& frames, int frame) const;

@@ -34,32 +34,52 @@ Side::Side(const SurfacePoint& surface_point, const PointMotion& motion,
 
 namespace {
 
-/// Adds one 3x3 block, weighted, to the rows 3 node of the body part.
-void add_node_node(const Side& p, const Side& q, const Mat3& block, dynamics::BorderedMatrix& A) {
-  for (int i = 0; i < p.point.count; ++i)
-    for (int j = 0; j < q.point.count; ++j) {
-      const auto ki = static_cast<std::size_t>(i), kj = static_cast<std::size_t>(j);
-      const int slot = A.body.slot(p.point.node[ki], q.point.node[kj]);
-      PALPATE_CHECK(slot >= 0,
-                    "contact couples nodes {} and {}, which are missing from the pattern that its source "
-                    "added in add_pattern",
-                    p.point.node[ki], q.point.node[kj]);
-      A.body.add(slot, p.point.weight[ki] * q.point.weight[kj] * block);
-    }
-}
+/// Writes to a BorderedMatrix.
+struct WholeMatrix {
+  dynamics::BorderedMatrix& A;
+  MatX& corner() const { return A.corner; }
+  void node_node(const Side& p, const Side& q, const Mat3& block) const {
+    for (int i = 0; i < p.point.count; ++i)
+      for (int j = 0; j < q.point.count; ++j) {
+        const auto ki = static_cast<std::size_t>(i), kj = static_cast<std::size_t>(j);
+        const int slot = A.body.slot(p.point.node[ki], q.point.node[kj]);
+        PALPATE_CHECK(slot >= 0,
+                      "contact couples nodes {} and {}, which are missing from the pattern that its source "
+                      "added in add_pattern",
+                      p.point.node[ki], q.point.node[kj]);
+        A.body.add(slot, p.point.weight[ki] * q.point.weight[kj] * block);
+      }
+  }
+  void right(int node, int column, const Mat36& block) const {
+    A.right.block<3, 6>(3 * node, column) += block;
+  }
+  void bottom(int node, int column, const Mat63& block) const {
+    A.bottom.block<6, 3>(column, 3 * node) += block;
+  }
+};
+
+/// Writes rows and columns of frames to a SparseBorder.
+struct BorderAlone {
+  dynamics::SparseBorder& border;
+  MatX& corner() const { return border.corner; }
+  void node_node(const Side&, const Side&, const Mat3&) const {}
+  void right(int node, int column, const Mat36& block) const { border.at(node, column).right += block; }
+  void bottom(int node, int column, const Mat63& block) const { border.at(node, column).bottom += block; }
+};
 
 /// Adds s_p s_q B_p^T (k (K B_q + D V_q) + d D B_q) for one pair of sides.
+template <class Matrix>
 void add_pair_block(const Side& p, const Side& q, const SampleForce& s, double k_scale, double d_scale,
-                    int nodal_size, dynamics::BorderedMatrix& A) {
+                    int nodal_size, const Matrix& A) {
   const double sign = p.sign * q.sign;
   const Mat3 C = sign * (k_scale * s.K + d_scale * s.D);
   if (q.is_nodes()) {
-    if (p.is_nodes()) return add_node_node(p, q, C, A);
+    if (p.is_nodes()) return A.node_node(p, q, C);
     if (p.frame->u_offset < 0) return;
     const Mat63 rows = p.Z.transpose() * C;
     for (int j = 0; j < q.point.count; ++j) {
       const auto kj = static_cast<std::size_t>(j);
-      A.bottom.block<6, 3>(p.frame->u_offset - nodal_size, 3 * q.point.node[kj]) += q.point.weight[kj] * rows;
+      A.bottom(q.point.node[kj], p.frame->u_offset - nodal_size, q.point.weight[kj] * rows);
     }
     return;
   }
@@ -70,27 +90,52 @@ void add_pair_block(const Side& p, const Side& q, const SampleForce& s, double k
   if (p.is_nodes()) {
     for (int i = 0; i < p.point.count; ++i) {
       const auto ki = static_cast<std::size_t>(i);
-      A.right.block<3, 6>(3 * p.point.node[ki], column) += p.point.weight[ki] * CB;
+      A.right(p.point.node[ki], column, p.point.weight[ki] * CB);
     }
   } else if (p.frame->u_offset >= 0) {
-    A.corner.block<6, 6>(p.frame->u_offset - nodal_size, column) += p.Z.transpose() * CB;
+    A.corner().template block<6, 6>(p.frame->u_offset - nodal_size, column) += p.Z.transpose() * CB;
   }
 }
 
-void add_geometric(const Side& p, double k_scale, int nodal_size, dynamics::BorderedMatrix& A) {
-  if (p.is_nodes() || p.frame->u_offset < 0) return;
-  const int at = p.frame->u_offset - nodal_size;
-  A.corner.block<3, 3>(at, at) -= k_scale * p.sign * p.G;
+template <class Matrix>
+void add_all_blocks(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale,
+                    int nodal_size, const Matrix& A) {
+  for (const Side* p : {&a, &b}) {
+    for (const Side* q : {&a, &b}) add_pair_block(*p, *q, s, k_scale, d_scale, nodal_size, A);
+    if (p->is_nodes() || p->frame->u_offset < 0) continue;
+    const int at = p->frame->u_offset - nodal_size;
+    A.corner().template block<3, 3>(at, at) -= k_scale * p->sign * p->G;
+  }
 }
+
+/// Returns whether a side is a frame in the State.
+bool has_rows(const Side& side) { return !side.is_nodes() && side.frame->u_offset >= 0; }
 
 }  // namespace
 
 void add_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale,
                         int nodal_size, dynamics::BorderedMatrix& A) {
-  for (const Side* p : {&a, &b}) {
-    for (const Side* q : {&a, &b}) add_pair_block(*p, *q, s, k_scale, d_scale, nodal_size, A);
-    add_geometric(*p, k_scale, nodal_size, A);
+  add_all_blocks(a, b, s, k_scale, d_scale, nodal_size, WholeMatrix{A});
+}
+
+// A sample is one point on its nodes, x_a - x_b.
+void add_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale,
+                        int nodal_size, dynamics::PointStiffness& C, dynamics::SparseBorder& border) {
+  if (has_rows(a) || has_rows(b)) add_all_blocks(a, b, s, k_scale, d_scale, nodal_size, BorderAlone{border});
+  dynamics::PointStiffness::OfPoint point;
+  for (const Side* side : {&a, &b}) {
+    if (!side->is_nodes()) continue;
+    for (int i = 0; i < side->point.count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const int at = point.nodes.count++;
+      point.nodes.node[static_cast<std::size_t>(at)] = side->point.node[k];
+      point.weight[at] = side->sign * side->point.weight[k];
+    }
   }
+  if (point.nodes.count == 0) return;
+  point.nodes.relative = a.is_nodes() && b.is_nodes();
+  point.C = k_scale * s.K + d_scale * s.D;
+  C.points.push_back(point);
 }
 
 void apply_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale,

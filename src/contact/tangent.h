@@ -1,6 +1,8 @@
 #pragma once
 #include "contact/sample_math.h"
 #include "palpate/dynamics/matrix.h"
+#include "palpate/dynamics/point_stiffness.h"
+#include "palpate/dynamics/sparse_border.h"
 
 namespace palpate::contact {
 
@@ -31,6 +33,10 @@ struct Side {
 /// Adds k_scale K + d_scale D of one sample to A, for the sides that have rows in the State.
 void add_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale,
                         int nodal_size, dynamics::BorderedMatrix& A);
+/// Adds k_scale K + d_scale D of one sample: the part on nodes to C, rows and columns of frames in the State
+/// to `border`. The nodes' part is symmetric only where K and D are.
+void add_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale,
+                        int nodal_size, dynamics::PointStiffness& C, dynamics::SparseBorder& border);
 /// Adds (k_scale K + d_scale D) x of one sample to y.
 void apply_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale,
                           const VecX& x, VecX& y);

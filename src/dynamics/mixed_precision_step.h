@@ -34,6 +34,11 @@ class MixedPrecisionSolver {
   virtual ZeroRowSumMatrix* step_matrix(const BlockSparse& pattern) = 0;
   /// Does the work of LinearSolver::factor() for the matrix written there.
   virtual StepMatrixUse factor_step_matrix() = 0;
+  /// Returns the matrix last factored, of which `points` and `border` may be rewritten; null where there is
+  /// none.
+  virtual ZeroRowSumMatrix* lagged_matrix() = 0;
+  /// Takes the points and the border rewritten in lagged_matrix().
+  virtual void renew_points() = 0;
   /// Solves A x = b by iterative refinement with the step matrix last factored, which may be A itself,
   /// rounded, or the matrix of an earlier step (a lagged matrix). The result is as accurate as a solve with
   /// A.

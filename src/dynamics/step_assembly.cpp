@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/counters.h"
+#include "palpate/core/error.h"
 
 namespace palpate::dynamics {
 
@@ -12,12 +13,13 @@ void StepAssembly::find_parts() {
   all_can_ = true;
   any_beside_ = false;
   for (const auto& term : system_.terms()) {
-    const bool zero = term->traits().zero_tangent;
+    CornerTerm* const corner = dynamic_cast<CornerTerm*>(term.get());
+    const bool zero = corner || term->traits().zero_tangent;
     FusedStepTerm* fused = zero ? nullptr : dynamic_cast<FusedStepTerm*>(term.get());
     PointStiffnessTerm* beside = zero || fused ? nullptr : dynamic_cast<PointStiffnessTerm*>(term.get());
     all_can_ = all_can_ && (fused || beside || zero);
     any_beside_ = any_beside_ || beside;
-    parts_.push_back({term.get(), fused, beside});
+    parts_.push_back({term.get(), fused, beside, corner});
   }
   made_of_.clear();
   pattern_version_ = 0;
@@ -60,7 +62,7 @@ void StepAssembly::update_own_pattern(const Layout& layout) {
 
 bool StepAssembly::applies(const StateView& state) {
   const Layout& layout = *state.layout;
-  if (layout.border_size() > 0 || layout.nodal_size == 0 || system_.nodal_mass().size() != layout.nodal_size)
+  if (system_.any_master() || layout.nodal_size == 0 || system_.nodal_mass().size() != layout.nodal_size)
     return false;
   if (parts_.size() != system_.terms().size()) find_parts();
   if (!all_can_) return false;
@@ -159,34 +161,92 @@ void StepAssembly::add_fused(const StateView& state, const VecX& shift, double d
 
 void StepAssembly::assemble(const StateView& state, const VecX& shift, double m_scale, double d_scale,
                             double k_scale, VecX& f, ZeroRowSumMatrix& A, bool keep) {
+  assemble_bodies(state, shift, m_scale, d_scale, k_scale, f, A, keep);
+  add_beside(state, shift, m_scale, d_scale, k_scale, f, A);
+}
+
+void StepAssembly::assemble_bodies(const StateView& state, const VecX& shift, double m_scale, double d_scale,
+                                   double k_scale, VecX& f, ZeroRowSumMatrix& A, bool keep) {
   f.setZero(state.layout->u_size);
   A.scale = std::ldexp(1.0, -std::ilogb(system_.mean_nodal_mass()));
   A.diagonal = m_scale * system_.nodal_mass();
   A.positions = state.q.data();  // node blocks come first, with q' = u
   A.held = &system_.driven_nodes();
-  A.points.clear();
   add_fused(state, shift, d_scale, k_scale, f, A, keep);
-  for (const Part& part : parts_) {
-    if (part.fused) continue;
-    if (part.beside)
-      part.beside->add_step(state, shift, k_scale, d_scale, f, A.points);
-    else
-      part.term->add_force(state, f);
+  for (const Part& part : parts_)
+    if (is_load(part)) part.term->add_force(state, f);
+}
+
+void StepAssembly::apply_body_damping(const StateView& state, const VecX& change, VecX& f) {
+  for (const Part& part : parts_)
+    if (part.fused) part.term->apply_tangent(state, 0.0, 1.0, change, f);
+}
+
+void StepAssembly::assemble_beside(const StateView& state, const VecX& shift, const VecX* change, double h,
+                                   VecX& b, ZeroRowSumMatrix& A) {
+  b.setZero(state.layout->u_size);
+  add_beside(state, shift, 1.0, h, h * h, b, A);
+  if (change && any_beside_) {
+    product_.setZero(b.size());
+    for (const Part& part : parts_)
+      if (part.beside) part.term->apply_tangent(state, 0.0, 1.0, *change, product_);
+    b -= product_;
   }
+  b *= h;
+  for (int dof : system_.driven_dofs()) b[dof] = 0.0;
+}
+
+/// Adds f += force - K shift and the matrix of the part beside, which is cleared before.
+void StepAssembly::add_beside(const StateView& state, const VecX& shift, double m_scale, double d_scale,
+                              double k_scale, VecX& f, ZeroRowSumMatrix& A) {
+  const Layout& layout = *state.layout;
+  A.points.clear();
+  A.border.reset(layout.node_count(), layout.border_size());
+  if (layout.border_size() > 0) add_corner(state, shift, m_scale, d_scale, k_scale, f, A.border.corner);
+  for (const Part& part : parts_)
+    if (part.beside) part.beside->add_step(state, shift, k_scale, d_scale, f, A.points, A.border);
+}
+
+/// Adds f += force - K shift of the terms on rigid blocks, and their matrix with the masses of these blocks.
+/// @param corner  square, of the border's size
+void StepAssembly::add_corner(const StateView& state, const VecX& shift, double m_scale, double d_scale,
+                              double k_scale, VecX& f, MatX& corner) {
+  corner_.corner.swap(corner);
+  for (const auto& inertia : system_.inertias())
+    if (state.layout->find(inertia->block_id())->kind != BlockKind::kNodes)
+      inertia->add_mass(state, m_scale, corner_);
+  for (const Part& part : parts_) {
+    if (!part.corner) continue;
+    part.term->add_force(state, f);
+    if (!part.term->traits().has_tangent) continue;
+    part.term->apply_tangent(state, -1.0, 0.0, shift, f);
+    part.term->add_tangent(state, k_scale, d_scale, corner_);
+  }
+  corner_.corner.swap(corner);
 }
 
 void StepAssembly::residual(const StateView& state, const VecX& shift, const VecX& change, double h,
                             VecX& r) {
+  PALPATE_CHECK(state.layout->border_size() == 0, "residual() of a step with rigid blocks");
+  add_residual(state, shift, change, h, true, r);
+}
+
+void StepAssembly::residual_of_bodies(const StateView& state, const VecX& shift, const VecX& change, double h,
+                                      VecX& r) {
+  add_residual(state, shift, change, h, false, r);
+}
+
+void StepAssembly::add_residual(const StateView& state, const VecX& shift, const VecX& change, double h,
+                                bool beside, VecX& r) {
   r.setZero(state.layout->u_size);
   for (const Part& part : parts_) {
-    if (part.fused)
-      part.fused->add_step_force(state, shift, change, r);
-    else if (part.beside)
-      part.beside->add_step_force(state, shift, change, r);
-    else
-      part.term->add_force(state, r);
+    if (part.fused) part.fused->add_step_force(state, shift, change, r);
+    if (part.beside && beside) part.beside->add_step_force(state, shift, change, r);
+    if (is_load(part)) part.term->add_force(state, r);
   }
-  r = h * r - system_.nodal_mass().cwiseProduct(change);
+  const VecX& mass = system_.nodal_mass();
+  r *= h;
+  r.head(mass.size()) -= mass.cwiseProduct(change.head(mass.size()));
   for (int dof : system_.driven_dofs()) r[dof] = 0.0;
 }
 

@@ -123,6 +123,8 @@ class AutoSolver final : public dynamics::LinearSolver,
     values_version_ = 0;
     return mixed_->factor_step_matrix();
   }
+  dynamics::ZeroRowSumMatrix* lagged_matrix() override { return mixed_ ? mixed_->lagged_matrix() : nullptr; }
+  void renew_points() override { mixed_->renew_points(); }
   std::optional<SolveStatus> solve_by_refinement(dynamics::ResidualFunction& residual, VecX& x) override {
     return mixed_ ? mixed_->solve_by_refinement(residual, x) : std::nullopt;
   }

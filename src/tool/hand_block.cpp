@@ -72,7 +72,7 @@ class HandInertia : public dynamics::InertiaTerm {
 };
 
 /// Force of the arm and friction of the device, axis by axis.
-class ArmTerm : public dynamics::ForceTerm {
+class ArmTerm : public dynamics::ForceTerm, public dynamics::CornerTerm {
  public:
   ArmTerm(int hand_id, const HandBlock& hand)
       : hand_id_(hand_id), requested_(hand.requested), first_(hand.requested(0.0).pose.rotation) {
@@ -144,7 +144,7 @@ class ArmTerm : public dynamics::ForceTerm {
   Vec6 k_, b_, c_, f_, smooth_;
 };
 
-class HandCoupling : public dynamics::ForceTerm {
+class HandCoupling : public dynamics::ForceTerm, public dynamics::CornerTerm {
  public:
   HandCoupling(int hand_id, int tool_id, const CouplingGains& gains, const HandBlock& hand)
       : hand_id_(hand_id), tool_id_(tool_id), gains_(gains), hand_(hand) {}

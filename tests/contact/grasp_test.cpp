@@ -267,7 +267,8 @@ TEST(Grasp, PointStiffnessIsTheNodesBlock) {
   const VecX shift = direction(18, 6);
   VecX f = VecX::Zero(18);
   dynamics::PointStiffness C;
-  term.add_step(pulled.view(), shift, 0.7, 0.3, f, C);
+  dynamics::SparseBorder none;
+  term.add_step(pulled.view(), shift, 0.7, 0.3, f, C, none);
   MatX A = MatX::Zero(18, 18);
   for (const auto& point : C.points)
     for (int i = 0; i < point.nodes.count; ++i)

@@ -160,7 +160,8 @@ TEST(SoftPair, PointStiffnessIsTheTangent) {
     for (int i = 0; i < size; ++i) shift[i] = 1e-3 * std::sin(3.0 * i), change[i] = std::cos(2.0 * i);
     dynamics::PointStiffness C;
     VecX f = VecX::Zero(size), g = VecX::Zero(size);
-    term.add_step(balls.state.view(), shift, kK, kD, f, C);
+    dynamics::SparseBorder none;
+    term.add_step(balls.state.view(), shift, kK, kD, f, C, none);
     EXPECT_FALSE(C.points.empty());
     MatX dense = MatX::Zero(size, size);
     const auto add = [&](const dynamics::PointStiffness::Nodes& nodes, auto block) {

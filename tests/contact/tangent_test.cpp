@@ -342,3 +342,36 @@ TEST(ContactEnergy, DissipationClosesThePowerBalance) {
     EXPECT_GT(dissipated, 0.0);
   }
 }
+
+// A step's assembly outside of the pattern yields the matrix: the nodes' part as sums, rows and columns of
+// frames as a border; its force is the term's less the tangent times the shift.
+TEST(ContactTangent, TheStepHasTheBorderOfTheMatrix) {
+  for (const Law& law : kLaws) {
+    Scene scene(law, true, "symmetric");
+    ASSERT_TRUE(scene.term.is_point_stiffness());
+    const dynamics::StateView at = scene.world.state.view();
+    const int size = at.layout->u_size, nodal = at.layout->nodal_size;
+    const VecX shift = direction(size, 7);
+    VecX f = VecX::Zero(size);
+    dynamics::PointStiffness C;
+    dynamics::SparseBorder border;
+    border.reset(at.layout->node_count(), size - nodal);
+    scene.term.add_step(at, shift, 0.7, 0.3, f, C, border);
+    MatX whole = MatX::Zero(size, size);
+    for (int k = 0; k < size; ++k) {
+      const VecX unit = VecX::Unit(size, k);
+      VecX column = VecX::Zero(size), of_border = border.corner * unit.tail(size - nodal);
+      C.add_product(unit, 1.0, column);
+      border.add_right_product(unit, 1.0, column);
+      border.add_bottom_product(unit, 1.0, of_border);
+      column.tail(size - nodal) += of_border;
+      whole.col(k) = column;
+    }
+    const MatX expected = step_matrix(scene.term, scene.world.state, 0.7, 0.3).to_dense();
+    EXPECT_GT(expected.topRightCorner(nodal, size - nodal).norm(), 0.1);
+    EXPECT_LE((whole - expected).norm(), 1e-13 * expected.norm()) << law.name;
+    const VecX step = force(scene.term, scene.world.state) -
+                      step_matrix(scene.term, scene.world.state, 1.0, 0.0).to_dense() * shift;
+    EXPECT_LE((f - step).norm(), 1e-13 * step.norm()) << law.name;
+  }
+}

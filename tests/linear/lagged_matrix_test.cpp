@@ -119,6 +119,8 @@ class EverySolve final : public LinearSolver, public MixedPrecisionSolver {
     if (status == SolveStatus::kOk) compare(b, x, worst_own);
     return status;
   }
+  ZeroRowSumMatrix* lagged_matrix() override { return mixed_ ? mixed_->lagged_matrix() : nullptr; }
+  void renew_points() override { mixed_->renew_points(); }
   std::optional<SolveStatus> solve_by_refinement(ResidualFunction& residual, VecX& x) override {
     if (!mixed_) return {};
     const std::optional<SolveStatus> status = mixed_->solve_by_refinement(residual, x);

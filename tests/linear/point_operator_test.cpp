@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "linear/bent_beam.h"
+#include "linear/random_points.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 
@@ -16,32 +17,6 @@ namespace palpate {
 namespace {
 
 using namespace dynamics;
-
-/// Random sums of every kind between any nodes, with magnitude `size` [kg].
-PointStiffness random_points(int nodes, int count, double size, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  std::uniform_int_distribution<int> any(0, nodes - 1);
-  PointStiffness out;
-  for (int k = 0; k < count; ++k) {
-    PointStiffness::Nodes of;
-    of.relative = k % 2 == 0;
-    of.count = of.relative ? 8 : 3 + k % 2;
-    for (int i = 0; i < of.count; ++i) of.node[static_cast<std::size_t>(i)] = any(random);
-    const auto weights = [&] {  // a's weights sum to 1, b's to -1
-      PointStiffness::Weights w = PointStiffness::Weights::Zero();
-      for (int i = 0; i < of.count; ++i) w[i] = 0.3 + 0.2 * uniform(random);
-      const int a = of.relative ? 4 : of.count;
-      w.head(a) /= w.head(a).sum();
-      if (of.relative) w.tail(4) /= -w.tail(4).sum();
-      return w;
-    };
-    const Vec3 n = Vec3(uniform(random), uniform(random), uniform(random)).normalized();
-    const Mat3 C = n * n.transpose() + (k % 3 == 0 ? 0.1 : 0.0) * Mat3::Identity();
-    for (int s = 0; s < (k % 3 == 0 ? 1 : 5); ++s) out.points.push_back({of, weights(), 0.2 * size * C});
-  }
-  return out;
-}
 
 /// Adds sums on the same nodes, or on all but one of them.
 PointStiffness on_the_same_nodes(const PointStiffness& C, double size) {
@@ -63,16 +38,6 @@ PointStiffness on_the_same_nodes(const PointStiffness& C, double size) {
     out.points.push_back({one.nodes, w, C3 + 0.1 * Mat3::Ones()});
   }
   return out;
-}
-
-/// Calls visit(i, j, block) for each block of the definition.
-template <class Visit>
-void for_each_block(const PointStiffness& C, Visit visit) {
-  for (const auto& a : C.points)
-    for (int i = 0; i < a.nodes.count; ++i)
-      for (int j = 0; j < a.nodes.count; ++j)
-        visit(a.nodes.node[static_cast<std::size_t>(i)], a.nodes.node[static_cast<std::size_t>(j)],
-              Mat3(a.weight[i] * a.weight[j] * a.C));
 }
 
 /// Returns A + C in one pattern, without C in held directions.
@@ -102,22 +67,6 @@ BorderedMatrix with(const BorderedMatrix& A, const PointStiffness& C, const std:
   return out;
 }
 
-/// Two parts, with nodes in a permuted order.
-struct Order {
-  linear::NodeOrder order;
-  std::vector<int> place;
-  explicit Order(int nodes) : place(static_cast<std::size_t>(nodes)) {
-    for (int k = 0; k < nodes; ++k) {
-      order.node.push_back((7 * k + 3) % nodes);
-      place[static_cast<std::size_t>(order.node.back())] = k;
-    }
-    order.start = {0, nodes / 3, nodes};
-    order.part = {0, 1, 2};
-    order.piece_start = order.start;
-    order.piece = {0, 1, 2};
-  }
-};
-
 }  // namespace
 
 // Products with the sums equal products with their blocks, part by part, and p . C p is the total over the
@@ -128,8 +77,8 @@ TEST(PointOperator, ProductsAreThoseOfItsBlocks) {
   const Order order(kNodes);
   const PointStiffness C = on_the_same_nodes(random_points(kNodes, 40, 3.0, 1), 2.0);
   linear::PointOperator op;
-  op.take(random_points(kNodes, 9, 1.0, 4), order.place, order.order, 2.0);  // must leave no trace
-  op.take(C, order.place, order.order, kScale);
+  op.take(random_points(kNodes, 9, 1.0, 4), {}, order.place, order.order, 2.0);  // must leave no trace
+  op.take(C, {}, order.place, order.order, kScale);
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   std::vector<double> x(4 * kNodes, 0.0), expected(4 * kNodes, 0.0), y(4 * kNodes, 0.0);
@@ -190,7 +139,7 @@ TEST(PointOperator, RelativeSumsFeelNoTranslation) {
   std::erase_if(C.points, [](const auto& a) { return !a.nodes.relative; });
   ASSERT_GT(C.points.size(), 5u);
   linear::PointOperator op;
-  op.take(C, order.place, order.order, 1.0);
+  op.take(C, {}, order.place, order.order, 1.0);
   std::vector<float> p(4 * kNodes, 0.0f), q(4 * kNodes, 0.0f);
   std::vector<double> y(4 * kNodes, 0.0);
   for (int k = 0; k < kNodes; ++k)

@@ -22,6 +22,7 @@ class AssemblyTimes {
   dynamics::BlockSparse pattern_;
   dynamics::ZeroRowSumMatrix* elements_ = nullptr;
   dynamics::PointStiffness points_;
+  dynamics::SparseBorder border_;
   VecX shift_, force_;
 };
 

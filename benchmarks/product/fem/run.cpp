@@ -48,6 +48,8 @@ class CheckedSolver final : public LinearSolver, public MixedPrecisionSolver {
     ++step_matrices;
     return timed([&] { return mixed_->factor_step_matrix(); });
   }
+  ZeroRowSumMatrix* lagged_matrix() override { return mixed_ ? mixed_->lagged_matrix() : nullptr; }
+  void renew_points() override { mixed_->renew_points(); }
   std::optional<SolveStatus> solve_by_refinement(ResidualFunction& residual, VecX& x) override {
     if (!mixed_) return {};
     const long before = solver_->counters().lagged;

@@ -49,7 +49,7 @@ class ContactForce : public dynamics::ForceTerm,
                      VecX& y) override;
   bool is_point_stiffness() const override;
   void add_step(const dynamics::StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,
-                dynamics::PointStiffness& C) override;
+                dynamics::PointStiffness& C, dynamics::SparseBorder& border) override;
   void add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change,
                       VecX& f) override;
   /// The following three functions concern pairs with friction_tangent = "secant": within a step their

@@ -35,6 +35,8 @@ struct PointStiffness {
   bool empty() const { return points.empty(); }
   /// Removes all summands; memory is kept.
   void clear() { points.clear(); }
+  /// Adds y += by C x; x and y contain at least the rows of the nodes.
+  void add_product(const VecX& x, double by, VecX& y) const;
 };
 
 }  // namespace palpate::dynamics

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "palpate/core/pose.h"
+#include "palpate/dynamics/corner_term.h"
 #include "palpate/dynamics/force_term.h"
 #include "palpate/dynamics/inertia_term.h"
 
@@ -54,7 +55,7 @@ Mat3 world_inertia(const Pose& pose, const Vec3& inertia);
 Mat6 gyroscopic_tangent(const RigidMotion& motion, const Vec3& inertia, double k_scale, double d_scale);
 
 /// Force on a single rigid block: six rows, with 6x6 matrices K and D.
-class RigidForce : public ForceTerm {
+class RigidForce : public ForceTerm, public CornerTerm {
  public:
   /// @param block_id  the rigid block that it acts on
   explicit RigidForce(int block_id) : block_id_(block_id) {}

@@ -48,6 +48,8 @@ class System {
   const std::vector<int>& driven_dofs() const { return driven_dofs_; }
   /// Returns whether any direction is driven.
   bool any_driven() const { return !driven_dofs_.empty(); }
+  /// Returns whether any driven direction has a master.
+  bool any_master() const { return any_master_; }
   bool symmetric() const;  ///< Returns whether the tangents of all terms are symmetric.
   /// Switches the projection of the tangents of all terms that support it (PsdProjectedTerm).
   void project_to_psd(bool on);

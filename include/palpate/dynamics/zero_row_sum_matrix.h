@@ -5,6 +5,7 @@
 
 #include "palpate/dynamics/matrix.h"
 #include "palpate/dynamics/point_stiffness.h"
+#include "palpate/dynamics/sparse_border.h"
 
 namespace palpate::dynamics {
 
@@ -22,6 +23,9 @@ struct HeldNode {
 /// the difference of two nodes' motions, never on a translation, however large the stiffness is relative to
 /// the mass of a node.
 /// C is the part outside the sparsity pattern (contact), in double.
+///
+/// Rigid blocks, if any, are a border of this matrix, in double. Solvers eliminate its symmetric part: they
+/// solve with A - B S^-1 B^T, B = (right + bottom^T)/2, S = (corner + corner^T)/2.
 struct ZeroRowSumMatrix {
   const BlockSparse* pattern = nullptr;  ///< Sparsity only; its values are not read.
   /// The blocks of the pattern's slots s of (i, j) and of (j, i) are both at values[9 slot_map[s]]; -1 for i
@@ -32,6 +36,7 @@ struct ZeroRowSumMatrix {
   double scale = 1.0;     ///< Power of two, so that scaling is exact.
   VecX diagonal;          ///< m, per u-direction.
   PointStiffness points;  ///< C
+  SparseBorder border;    ///< Rows and columns of rigid blocks; its nodes are nodes of `points`.
   /// Nodal positions [m], as in BorderedMatrix; valid until MixedPrecisionSolver::factor_step_matrix()
   /// returns.
   const double* positions = nullptr;

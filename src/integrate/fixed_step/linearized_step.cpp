@@ -22,6 +22,9 @@ constexpr double kLastImprovement = 0.02;
 /// Upper limit of the error of a solve that another one continues, relative to the change of the solution.
 constexpr double kRoughly = 0.1;
 
+/// Returns whether there are rigid blocks, which the nodes' equations contain in residuals only.
+bool is_bordered(const LinearizedEquations& e) { return e.at.layout->border_size() > 0; }
+
 }  // namespace
 
 LinearizedStep::LinearizedStep(dynamics::System& system, std::unique_ptr<dynamics::LinearSolver> solver,
@@ -86,13 +89,12 @@ StepStatus LinearizedStep::solve(const Equations& e, VecX& du, dynamics::Stepper
 /// converged, the last solve continues to the tolerance. All solves together cost little more than one.
 /// Returns false where no solution was found and the step has to be solved otherwise.
 bool LinearizedStep::solve_repeatedly(const Equations& e, VecX& du, Repeats& repeats) {
-  if (!mixed_ || !solves_ || !fused_.applies(e.at)) return false;
+  if (!mixed_ || !solves_ || is_bordered(e) || !fused_.applies(e.at)) return false;
   dynamics::ZeroRowSumMatrix* A = mixed_->step_matrix(fused_.pattern());
   if (!A) return false;
   forget();
   ++counters_->force_evaluations;
   if (!assemble_fused(e, *A, false) || mixed_->factor_step_matrix() != StepMatrixUse::kSolve) return false;
-  assemble_beside(e, A->points, beside_);
   dynamics::StepSolves::Solved solved = solves_->solve_first(rhs_, du, roughly_);
   for (double share = roughly_;;) {
     if (solved.status != SolveStatus::kOk || !all_finite(du)) return false;
@@ -101,9 +103,8 @@ bool LinearizedStep::solve_repeatedly(const Equations& e, VecX& du, Repeats& rep
     const bool done = repeats.improve(s_of_x_, dv_of_x_);
     if (done && (solved.accurate || share == 0.0)) break;
     share = done ? 0.0 : roughly_;
-    beside_before_.swap(beside_);
-    assemble_beside(e, A->points, beside_);
-    rhs_ += beside_ - beside_before_;
+    if (!assemble_beside(e, *A)) return false;
+    fused_.right_hand_side(rhs_);
     solved = solves_->solve_next(rhs_, du, share);
   }
   if (goes_along_negative_curvature(e, du)) return false;
@@ -111,20 +112,11 @@ bool LinearizedStep::solve_repeatedly(const Equations& e, VecX& du, Repeats& rep
   return true;
 }
 
-/// Assembles the contribution of the PointStiffness terms to matrix and right-hand side.
-void LinearizedStep::assemble_beside(const Equations& e, dynamics::PointStiffness& C, VecX& out) {
+/// Assembles the contribution of contact and rigid blocks to matrix and right-hand side; returns false where
+/// the latter is not finite.
+bool LinearizedStep::assemble_beside(const Equations& e, dynamics::ZeroRowSumMatrix& A) {
   const ScopedTimer timer(counters_->tangent_s);
-  C.clear();
-  out.setZero(e.at.layout->u_size);
-  product_.setZero(out.size());
-  for (const auto& term : system_.terms()) {
-    auto* const beside = dynamic_cast<dynamics::PointStiffnessTerm*>(term.get());
-    if (!beside || term->traits().zero_tangent) continue;
-    beside->add_step(e.at, e.s, e.h * e.h, e.h, out, C);
-    if (!e.dv_is_zero) term->apply_tangent(e.at, 0.0, 1.0, e.dv, product_);
-  }
-  out = e.h * (out - product_);
-  for (const int dof : system_.driven_dofs()) out[dof] = 0.0;
+  return fused_.assemble_beside(e, A);
 }
 
 StepStatus LinearizedStep::solve_once(const Equations& e, VecX& du) {
@@ -138,58 +130,70 @@ StepStatus LinearizedStep::solve_once(const Equations& e, VecX& du) {
   return solve_whole(e, du);
 }
 
-/// Residual of the equations as a function of du.
-class LinearizedStep::Residual final : public dynamics::ResidualFunction {
+/// Residual of the nodes' equations as a function of the nodal rows of du.
+class LinearizedStep::NodalResidual final : public dynamics::ResidualFunction {
  public:
-  Residual(LinearizedStep& of, const Equations& e) : of_(of), e_(e) {}
-  void at(const VecX& x, VecX& r) override { of_.evaluate_residual(e_, x, r); }
+  NodalResidual(LinearizedStep& of, const Equations& e) : of_(of), e_(e) {}
+  void at(const VecX& x, VecX& r) override {
+    if (!is_bordered(e_)) return of_.evaluate_residual(e_, x, r);
+    VecX& du = of_.du_;
+    du.resize(e_.at.layout->u_size);
+    du.head(x.size()) = x;
+    of_.fused_.complete(du);
+    of_.evaluate_residual(e_, du, r);
+  }
 
  private:
   LinearizedStep& of_;
   const Equations& e_;
 };
 
-/// Computes r = h (f - K (s + h du) - D (dv + du)) - M (dv + du) on free directions.
+/// Solves by refinement with the mixed-precision matrix that the solver has.
+std::optional<SolveStatus> LinearizedStep::refine(const Equations& e, VecX& du) {
+  NodalResidual residual(*this, e);
+  if (!is_bordered(e)) return mixed_->solve_by_refinement(residual, du);
+  const std::optional<SolveStatus> status = mixed_->solve_by_refinement(residual, nodal_du_);
+  if (status != SolveStatus::kOk) return status;
+  du.resize(e.at.layout->u_size);
+  du.head(nodal_du_.size()) = nodal_du_;
+  fused_.complete(du);
+  return status;
+}
+
 void LinearizedStep::evaluate_residual(const Equations& e, const VecX& du, VecX& r) {
   const ScopedTimer timer(counters_->force_s);
   ++counters_->force_evaluations;
-  s_of_x_ = e.s + e.h * du;
-  if (!e.dv_is_zero) dv_of_x_ = e.dv + du;
-  fused_.residual(e.at, s_of_x_, e.dv_is_zero ? du : dv_of_x_, e.h, r);
+  fused_.residual(e, du, r);
+}
+
+/// Returns u.M u.
+double LinearizedStep::square_norm(const Equations& e, const VecX& u) {
+  const VecX& mass = system_.nodal_mass();
+  if (mass.size() == u.size()) return u.dot(mass.cwiseProduct(u));
+  system_.apply_mass(e.at, u, product_);
+  return u.dot(product_);
 }
 
 /// Returns whether |u1| > |u0| / (1 - eta) on free directions. Sets u1_ to u1 there, and to zero on driven
 /// ones.
 bool LinearizedStep::is_faster(const Equations& e, const VecX& du) {
   if (!solver_.projects()) return false;
-  const auto square_norm = [&](const VecX& v) {
-    if (e.at.layout->border_size() == 0 && system_.nodal_mass().size() == v.size())
-      return v.dot(system_.nodal_mass().cwiseProduct(v));
-    system_.apply_mass(e.at, v, product_);
-    return v.dot(product_);
-  };
   constexpr double kMost = 1.0 / (1.0 - tuning::kNegativeCurvature);
   u1_ = e.at.u;
   for (const int dof : system_.driven_dofs()) u1_[dof] = 0.0;
-  const double before = square_norm(u1_);
+  const double before = square_norm(e, u1_);
   u1_ += du;  // Zero along driven directions.
-  speed_ = square_norm(u1_);
+  speed_ = square_norm(e, u1_);
   return speed_ > kMost * kMost * before;
 }
 
-/// Checks the fused equations. With s and dv zero on free directions except for dv = -u0, their right-hand
-/// side is b (less the effect of driven directions on free ones, which belongs to it).
+/// Checks the fused equations. Their residual at du = -u0 is b (less the effect of driven directions on free
+/// ones, which belongs to it).
 bool LinearizedStep::goes_along_negative_curvature(const Equations& e, const VecX& du) {
   if (!is_faster(e, du)) return false;
-  const ScopedTimer timer(counters_->force_s);
-  ++counters_->force_evaluations;
-  s_of_x_.setZero(e.s.size());
   dv_of_x_ = -e.at.u;
-  for (const int dof : system_.driven_dofs()) {
-    s_of_x_[dof] = e.s[dof];
-    dv_of_x_[dof] = e.dv[dof];
-  }
-  fused_.residual(e.at, s_of_x_, dv_of_x_, e.h, product_);
+  for (const int dof : system_.driven_dofs()) dv_of_x_[dof] = 0.0;
+  evaluate_residual(e, dv_of_x_, product_);
   return u1_.dot(product_) < (1.0 - tuning::kNegativeCurvature) * speed_;
 }
 
@@ -205,19 +209,19 @@ bool LinearizedStep::solve_by_lagged_matrix(const Equations& e, VecX& du) {
   if (!(std::abs(e.h - lagged_h_) <= kSameStep * e.h) ||
       fused_.pattern().pattern_version() != lagged_pattern_)
     return false;
-  Residual residual(*this, e);
-  return mixed_->solve_by_refinement(residual, du) == SolveStatus::kOk;
+  dynamics::ZeroRowSumMatrix* A = mixed_->lagged_matrix();
+  if (!A || !assemble_beside(e, *A)) return false;
+  mixed_->renew_points();
+  return refine(e, du) == SolveStatus::kOk;
 }
 
 /// Assembles force, product and matrix; returns false where the right-hand side is not finite.
 bool LinearizedStep::assemble_fused(const Equations& e, dynamics::ZeroRowSumMatrix& A, bool keep) {
-  {
-    const ScopedTimer timer(counters_->tangent_s);
-    ++counters_->tangent_evaluations;
-    fused_.assemble(e.at, e.s, 1.0, e.h, e.h * e.h, rhs_, A, keep);
-  }
-  const ScopedTimer timer(counters_->force_s);
-  return complete_right_hand_side(e);
+  const ScopedTimer timer(counters_->tangent_s);
+  ++counters_->tangent_evaluations;
+  if (!fused_.assemble(e, A, keep)) return false;
+  fused_.right_hand_side(rhs_);
+  return true;
 }
 
 bool LinearizedStep::solve_fused(const Equations& e, VecX& du) {
@@ -234,11 +238,7 @@ bool LinearizedStep::solve_fused(const Equations& e, VecX& du) {
   const StepMatrixUse use = mixed_->factor_step_matrix();
   switch (use) {
     case StepMatrixUse::kSolve: status = solver_.chosen().solve(rhs_, du); break;
-    case StepMatrixUse::kRefine: {
-      Residual residual(*this, e);
-      status = mixed_->solve_by_refinement(residual, du).value_or(SolveStatus::kNotConverged);
-      break;
-    }
+    case StepMatrixUse::kRefine: status = refine(e, du).value_or(SolveStatus::kNotConverged); break;
     case StepMatrixUse::kIndefinite: status = SolveStatus::kIndefinite; break;
     case StepMatrixUse::kNone: break;
   }
@@ -246,7 +246,8 @@ bool LinearizedStep::solve_fused(const Equations& e, VecX& du) {
   if (status == SolveStatus::kIndefinite) {
     known_indefinite_ = true;
     solver_.count_indefinite();
-    return use != StepMatrixUse::kRefine && solver_.projects() && solve_fused_projected(e, du, *A);
+    return (use != StepMatrixUse::kRefine || is_bordered(e)) && solver_.projects() &&
+           solve_fused_projected(e, du, *A);
   }
   if (status != SolveStatus::kOk) return false;
   lagged_h_ = e.h;
@@ -256,13 +257,12 @@ bool LinearizedStep::solve_fused(const Equations& e, VecX& du) {
 
 /// Solves with projected tangents. This matrix is not kept as a lagged matrix.
 bool LinearizedStep::solve_fused_projected(const Equations& e, VecX& du, dynamics::ZeroRowSumMatrix& A) {
-  {
-    const ProjectedTangents projected(system_);
-    if (!assemble_fused(e, A, repeats_)) return false;
-  }
-  if (mixed_->factor_step_matrix() != StepMatrixUse::kSolve) return false;
+  const ProjectedTangents projected(system_);
+  if (!assemble_fused(e, A, repeats_)) return false;
+  const StepMatrixUse use = mixed_->factor_step_matrix();
+  if (use != StepMatrixUse::kSolve && !(use == StepMatrixUse::kRefine && is_bordered(e))) return false;
   solver_.count_projected();
-  return solver_.chosen().solve(rhs_, du) == SolveStatus::kOk;
+  return (is_bordered(e) ? refine(e, du) : solver_.chosen().solve(rhs_, du)) == SolveStatus::kOk;
 }
 
 StepStatus LinearizedStep::solve_whole(const Equations& e, VecX& du) {
@@ -310,11 +310,6 @@ bool LinearizedStep::evaluate_right_hand_side(const Equations& e) {
   for (const auto& term : system_.terms())
     if (term->traits().has_tangent) term->apply_tangent(e.at, 1.0, 0.0, e.s, product_);
   rhs_ -= product_;
-  return complete_right_hand_side(e);
-}
-
-/// Completes the right-hand side from f - K s; returns false where it is not finite.
-bool LinearizedStep::complete_right_hand_side(const Equations& e) {
   if (!e.dv_is_zero) {
     product_.setZero(rhs_.size());
     for (const auto& term : system_.terms())

@@ -1,31 +1,22 @@
 #pragma once
 #include "dynamics/mixed_precision_step.h"
+#include "integrate/fixed_step/fused_equations.h"
 #include "integrate/step_solver.h"
 #include "palpate/dynamics/repeated_step.h"
-#include "palpate/dynamics/step_assembly.h"
 
 namespace palpate::integrate {
 
-/// Equations of a linearly implicit step of length h, with all quantities evaluated at one state:
-///     (M + h D + h^2 K) du = h (f - K s - D dv) - M dv       on free directions, du = 0 on driven ones.
-struct LinearizedEquations {
-  const dynamics::StateView& at;
-  double h;
-  const VecX& s;   ///< Displacements of free and driven directions.
-  const VecX& dv;  ///< Velocity changes of driven directions; zero on free ones.
-  bool dv_is_zero;
-};
-
-/// Solves these equations. Where terms evaluate a part of their force at the end of the step
-/// (RepeatedStepTerm) the solve is repeated until that part has converged. The contribution of the soft
-/// bodies is the same in all solves of a step, and is kept (dynamics::CachedStep). Methods of one solve, in
-/// order of cost:
+/// Solves the equations of linearly implicit steps (LinearizedEquations). Where terms evaluate a part of
+/// their force at the end of the step (RepeatedStepTerm) the solve is repeated until that part has converged.
+/// The contribution of the soft bodies is the same in all solves of a step, and is kept
+/// (dynamics::CachedStep). Methods of one solve, in order of cost:
 ///
 ///     lagged matrix      residuals of the true equations, without their matrix, refined by the
-///                        mixed-precision matrix of an earlier step of this length
+///                        mixed-precision matrix of an earlier step of this length, with the contact and the
+///                        rigid blocks of this one
 ///     fused assembly     force, product and mixed-precision matrix in one pass, and a solve with it; with
-///                        refinement where its rounding requires it; again with projected tangents where it
-///                        is indefinite
+///                        refinement where its rounding or rigid blocks require it (FusedEquations); again
+///                        with projected tangents where it is indefinite
 ///     whole matrix       in double, by the policy of StepSolver
 ///
 /// The first two require the capabilities MixedPrecisionSolver of the chosen solver and FusedStepTerm of the
@@ -62,7 +53,7 @@ class LinearizedStep {
   void report(dynamics::StepperCounters& counters) const { solver_.report(counters); }
 
  private:
-  class Residual;
+  class NodalResidual;
   class Repeats;
   using Equations = LinearizedEquations;
 
@@ -77,23 +68,24 @@ class LinearizedStep {
   bool goes_along_negative_curvature_of(const dynamics::BorderedMatrix& A, const Equations& e,
                                         const VecX& du);
   bool assemble_fused(const Equations& e, dynamics::ZeroRowSumMatrix& A, bool keep);
-  void assemble_beside(const Equations& e, dynamics::PointStiffness& C, VecX& out);
+  bool assemble_beside(const Equations& e, dynamics::ZeroRowSumMatrix& A);
+  std::optional<dynamics::SolveStatus> refine(const Equations& e, VecX& du);
   bool evaluate_right_hand_side(const Equations& e);
-  bool complete_right_hand_side(const Equations& e);
   void evaluate_residual(const Equations& e, const VecX& du, VecX& r);
+  double square_norm(const Equations& e, const VecX& u);
 
   dynamics::System& system_;
   StepSolver solver_;
   dynamics::MixedPrecisionSolver* mixed_;  ///< Capability of the chosen solver; null: it lacks it.
   dynamics::StepSolves* solves_;           ///< As above.
-  dynamics::StepAssembly fused_;
+  FusedEquations fused_;
   /// Tolerance of solves that another solve of the same step continues: error relative to the change of the
   /// solution.
   double roughly_;
   dynamics::StepperCounters* counters_ = nullptr;  ///< Counters of the current solve.
   dynamics::BorderedMatrix A_;
   VecX rhs_, product_, s_of_x_, dv_of_x_, u1_;
-  VecX beside_, beside_before_;    ///< Contributions of the PointStiffness terms.
+  VecX du_, nodal_du_;             ///< Solutions on their way: all rows, and those of the nodes.
   double speed_ = 0.0;             ///< u1.M u1 [J].
   bool known_indefinite_ = false;  ///< The matrix of the current solve is known to be indefinite.
   std::vector<dynamics::RepeatedStepTerm*> repeated_terms_;  ///< Scratch.

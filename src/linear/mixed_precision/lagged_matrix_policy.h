@@ -27,8 +27,8 @@ class LaggedMatrixPolicy {
   /// Begins the next step and returns whether it can use the lagged matrix, by the current estimate; true
   /// where there is no recent estimate.
   bool serves();
-  /// The step has a new matrix.
-  void renew() { age_ = 0; }
+  /// The step has a new matrix. A matrix that lacks a part of its equations counts as one of an earlier step.
+  void renew(bool incomplete = false) { age_ = incomplete ? 1 : 0; }
   /// Whether the error after a correction of this size needs no residual check. Sizes are relative to the
   /// solution, in the energy norm.
   bool sure(double correction) const;

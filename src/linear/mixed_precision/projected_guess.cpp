@@ -8,6 +8,10 @@ namespace palpate::linear {
 namespace {
 /// Most binary orders of magnitude between the magnitudes of related solutions.
 constexpr int kMostOrders = 60;
+/// Largest coefficient that a start passes on to the extrapolation of the next one. Larger ones express a
+/// solution by others that are unrelated to it (rounding before a first contact); extrapolated, they exceed
+/// the solution by orders of magnitude, and its digits are lost in residuals of that.
+constexpr double kMostShare = 1e6;
 }  // namespace
 
 void ProjectedGuess::prepare(const NodeOrder& order) {
@@ -84,6 +88,8 @@ ProjectedGuess::Start ProjectedGuess::choose() {
     of_V_[j] = of_AV_[j] * scale_;
     share_[j] = of_V_[j] / unit_;
   }
+  if (std::any_of(share_, share_ + used_, [](double share) { return !(std::abs(share) <= kMostShare); }))
+    std::fill_n(share_, kMostColumns, 1.0);
   return {scale_ * energy, scale_ * std::max(0.0, change), left == 0.0 ? 1.0 : left};
 }
 

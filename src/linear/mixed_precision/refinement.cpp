@@ -13,8 +13,9 @@ using dynamics::SolveStatus;
 namespace {
 /// Relative tolerance of the solve for the error due to the lagged matrix.
 constexpr double kRoughly = 0.5;
-/// Most residual evaluations per solve.
-constexpr int kMostResiduals = 4;
+/// Most residual evaluations per solve: with the matrix of an earlier step, for which a new one costs less
+/// than more of them, and with the step's own.
+constexpr int kMostResiduals = 4, kMostResidualsOfOwn = 8;
 }  // namespace
 
 void Refinement::prepare() {
@@ -29,7 +30,7 @@ std::optional<SolveStatus> Refinement::solve(dynamics::ResidualFunction& equatio
   const double start = wall_seconds();
   residuals_s_ = 0.0;
   x.resize(3 * s_.nodes());
-  const SolveStatus status = approach(equations, x);
+  const SolveStatus status = approach(equations, own ? kMostResidualsOfOwn : kMostResiduals, x);
   s_.counters.solve_s += wall_seconds() - start - residuals_s_;
   if (status != SolveStatus::kOk) {
     if (!own) lag_.failed();
@@ -41,7 +42,7 @@ std::optional<SolveStatus> Refinement::solve(dynamics::ResidualFunction& equatio
   return status;
 }
 
-SolveStatus Refinement::approach(dynamics::ResidualFunction& equations, VecX& x) {
+SolveStatus Refinement::approach(dynamics::ResidualFunction& equations, int most_residuals, VecX& x) {
   s_.begin(true);
   s_.put_solution(x.data());
   evaluate_residual(equations, x);
@@ -58,7 +59,7 @@ SolveStatus Refinement::approach(dynamics::ResidualFunction& equations, VecX& x)
                  correction = std::sqrt((change + solution - energy) / solution);
     if (residuals == 1) s_.correction = correction;
     if (open <= by_copy && !rounded_ && lag_.sure(correction)) break;
-    if (residuals == kMostResiduals) return SolveStatus::kNotConverged;
+    if (residuals == most_residuals) return SolveStatus::kNotConverged;
     s_.add_correction();
     s_.put_solution(x.data());
     evaluate_residual(equations, x);

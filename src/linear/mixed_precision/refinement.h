@@ -23,10 +23,14 @@ class Refinement {
   void prepare();
   /// The copy is now a new matrix.
   /// @param rounded  Whether its rounding is too coarse for a direct solution, so that solve() must be used.
-  void renew(bool rounded = false) {
-    lag_.renew();
-    rounded_ = own_ = rounded;
+  /// @param bordered  Whether it lacks the unsymmetric part of a border, so that solve() must be used.
+  void renew(bool rounded = false, bool bordered = false) {
+    lag_.renew(bordered);
+    rounded_ = rounded;
+    own_ = rounded || bordered;
   }
+  /// The copy has new points. @param rounded  as for renew()
+  void renew_points(bool rounded) { rounded_ = rounded; }
   /// The copy's equations were solved; `correction` is the relative part that the initial guess missed.
   void solved(double correction) { lag_.solved(correction); }
   /// Whether there is an initial guess for refinement with a rounded copy.
@@ -38,7 +42,7 @@ class Refinement {
 
  private:
   /// Iterates corrections until the error is within the tolerance.
-  dynamics::SolveStatus approach(dynamics::ResidualFunction& equations, VecX& x);
+  dynamics::SolveStatus approach(dynamics::ResidualFunction& equations, int most_residuals, VecX& x);
   /// Evaluates residual_ = b - A x.
   void evaluate_residual(dynamics::ResidualFunction& equations, VecX& x);
   /// Sets the right-hand side of the copy's system, b = residual_ + Ao x.

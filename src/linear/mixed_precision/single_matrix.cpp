@@ -169,7 +169,8 @@ SolveStatus SingleMatrix::take_step_matrix(int count, Singles* from, Singles* to
                 "zero-row-sum matrix of {} nodes: {} masses, but 3 per node needed", n,
                 written_.diagonal.size());
   find_held();
-  points_.take(written_.points, place_of_node_, order_, written_.scale);
+  const bool definite =
+      points_.take(written_.points, written_.border, place_of_node_, order_, written_.scale);
   point_stiffness_ = 0.0;
   for (int k = 0; k < count; ++k)
     for (const std::size_t entry : held_) from[k][entry] = 0.0f;
@@ -201,17 +202,39 @@ SolveStatus SingleMatrix::take_step_matrix(int count, Singles* from, Singles* to
   if (any(RowStatus::kNotFinite)) return SolveStatus::kSingular;
   stiffness_ = std::accumulate(trace_.begin(), trace_.end(), 0.0) /
                std::accumulate(mass_trace_.begin(), mass_trace_.end(), 0.0);
-  return any(RowStatus::kNotDefinite) ? SolveStatus::kIndefinite : SolveStatus::kOk;
+  return !definite || any(RowStatus::kNotDefinite) ? SolveStatus::kIndefinite : SolveStatus::kOk;
 }
 
-void SingleMatrix::renew_points() {
+bool SingleMatrix::renew_points(int count, Singles* from, Singles* to) {
+  add_point_products(-1.0f, count, from, to);
   for (const PointOperator::Diagonal& at : points_.diagonal()) {
     const auto node = static_cast<std::size_t>(at.node);
     store_inverse(node, own_block(node));
   }
-  points_.take(written_.points, place_of_node_, order_, written_.scale);
+  const bool definite =
+      points_.take(written_.points, written_.border, place_of_node_, order_, written_.scale);
   point_stiffness_ = 0.0;
   add_points_to_inverse();
+  add_point_products(1.0f, count, from, to);
+  return definite;
+}
+
+/// Adds to[k] += sign times the points' part of scale A from[k].
+void SingleMatrix::add_point_products(float sign, int count, Singles* from, Singles* to) {
+  if (points_.empty() || count == 0) return;
+  of_points_.resize(from[0].size(), 0.0f);
+  for (int k = 0; k < count; ++k) {
+    for (std::size_t part = 0; part < static_cast<std::size_t>(order_.parts()); ++part) {
+      points_.product(part, from[k].data(), of_points_.data());
+      zero_held(part, of_points_.data());
+    }
+    for (const PointOperator::Diagonal& row : points_.diagonal()) {
+      const Eigen::Index at = 4 * static_cast<Eigen::Index>(row.node);
+      Eigen::Map<Eigen::Vector4f> own(of_points_.data() + at);
+      Eigen::Map<Eigen::Vector4f>(to[k].data() + at) += sign * own;
+      own.setZero();
+    }
+  }
 }
 
 void SingleMatrix::multiply(std::size_t part, int count, const Singles* from, Singles* to) {

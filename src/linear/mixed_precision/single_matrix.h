@@ -35,8 +35,11 @@ class SingleMatrix {
   dynamics::ZeroRowSumMatrix& room(const dynamics::BlockSparse& pattern);
   /// Prepares the matrix written to room(), otherwise as take(). Held entries of `from` become zero.
   dynamics::SolveStatus take_step_matrix(int count, Singles* from, Singles* to);
-  /// Replaces the points of the step matrix by those now in room().
-  void renew_points();
+  /// Returns the step matrix last written; its points and border may be rewritten before renew_points().
+  dynamics::ZeroRowSumMatrix& written() { return written_; }
+  /// Replaces the points and the border of the step matrix by those now in written(), and their part of
+  /// to[k] = scale A from[k]. Returns false where the border's corner is not positive definite.
+  bool renew_points(int count, Singles* from, Singles* to);
   /// to[k] = scale A from[k], in single precision.
   void multiply(int count, const Singles* from, Singles* to);
   /// Ax = A x, in double.
@@ -59,6 +62,8 @@ class SingleMatrix {
   const PointOperator& points() const { return points_; }
   /// Largest ratio, over the nodes, of stiffness from points to the node's stiffness in the matrix.
   double point_stiffness() const { return point_stiffness_; }
+  /// Whether the zero-row-sum matrix has rigid blocks.
+  bool bordered() const { return !original_ && !written_.border.empty(); }
   /// Indices of held entries of vectors, four per node; rows and columns of a zero-row-sum matrix are the
   /// identity's there. Empty for a whole matrix.
   const std::vector<std::size_t>& held() const { return held_; }
@@ -75,6 +80,7 @@ class SingleMatrix {
   void find_held();
   void hold(std::size_t part);
   void add_points_to_inverse();
+  void add_point_products(float sign, int count, Singles* from, Singles* to);
   Eigen::Matrix3f own_block(std::size_t node) const;
   void store_inverse(std::size_t node, const Eigen::Matrix3f& block);
 
@@ -95,6 +101,7 @@ class SingleMatrix {
   Doubles mass_;
   Singles mass_single_, sums_, inverse_;
   PointOperator points_;
+  Singles of_points_;  ///< scratch of add_point_products(), zero between calls
   double stiffness_ = 1.0, point_stiffness_ = 0.0;
   std::vector<char> good_;
   std::vector<RowStatus> row_status_;

@@ -137,8 +137,21 @@ class SinglePcg final : public dynamics::LinearSolver,
     status_ = copy_.take_step_matrix(guess.count(), guess.solutions(), guess.products());
     const bool coarse =
         !(kSingleRounding * std::sqrt(copy_.stiffness()) <= kRoundingShare * rtol_) || points_are_coarse();
-    use_ = use_of(use_copy(room_->positions, coarse), coarse);
+    coarse_ = coarse;
+    use_ = use_of(use_copy(room_->positions, coarse), coarse || copy_.bordered());
     return use_;
+  }
+
+  ZeroRowSumMatrix* lagged_matrix() override {
+    const bool usable = use_ == StepMatrixUse::kRefine || use_ == StepMatrixUse::kSolve;
+    return delegated_ || matrix_ || !usable ? nullptr : room_;
+  }
+
+  void renew_points() override {
+    const ScopedTimer timer(counters_.factor_s);
+    ProjectedGuess& guess = state_.guess;
+    if (!copy_.renew_points(guess.count(), guess.solutions(), guess.products())) use_ = StepMatrixUse::kNone;
+    refinement_.renew_points(coarse_ || points_are_coarse());
   }
 
   std::optional<SolveStatus> solve_by_refinement(dynamics::ResidualFunction& residual, VecX& x) override {
@@ -176,7 +189,7 @@ class SinglePcg final : public dynamics::LinearSolver,
   Solved solve_next(const VecX& b, VecX& x, double share) override {
     {
       const ScopedTimer timer(counters_.factor_s);
-      copy_.renew_points();
+      copy_.renew_points(0, nullptr, nullptr);
     }
     if (points_are_coarse()) return {SolveStatus::kNotConverged, false};
     return approach(b, x, share, true);
@@ -235,7 +248,7 @@ class SinglePcg final : public dynamics::LinearSolver,
   // --- per matrix
   SolveStatus use_copy(const double* positions, bool rounded = false) {
     state_.guess.products_are_known(status_ == SolveStatus::kOk);
-    refinement_.renew(rounded);
+    refinement_.renew(rounded, copy_.bordered());
     refined_ = false;
     coarse_space_.serve(copy_.scale());
     if (status_ == SolveStatus::kOk && two_level_ && extra_iterations_ >= refresh_cost())
@@ -327,14 +340,15 @@ class SinglePcg final : public dynamics::LinearSolver,
   bool delegated_ = false;
 
   const BorderedMatrix* matrix_ = nullptr;  ///< matrix of the last factor(); null: a zero-row-sum one
-  const ZeroRowSumMatrix* room_ = nullptr;
+  ZeroRowSumMatrix* room_ = nullptr;
   std::uint64_t refused_pattern_ = 0;  ///< 0: none
   int refused_for_ = 0;                ///< matrices left until it is tried again
   VecX right_hand_side_;
   std::uint64_t values_version_ = 0;
   SolveStatus status_ = SolveStatus::kSingular;  ///< status of the copy
   StepMatrixUse use_ = StepMatrixUse::kNone;     ///< use of the zero-row-sum matrix
-  bool refined_ = false;                         ///< the equations of a coarse matrix were solved
+  bool coarse_ = false;   ///< the rounding of the zero-row-sum matrix is too coarse for solve()
+  bool refined_ = false;  ///< the equations of a matrix for refinement were solved
   SingleMatrix copy_;
   RigidModeCoarseSpace coarse_space_;  ///< ready only in `two-level`
   double extra_iterations_ = 0.0,

@@ -159,7 +159,7 @@ Eigen::Index ModelReduction::spread_patterns(StepResponses& x, Eigen::Index size
 bool ModelReduction::iterate(const CoupledTool& tool, double H, StepResponses& out) {
   using dynamics::SolveStatus;
   const dynamics::StateView view = tool.state.view();
-  if (!response_ || !assembly_.applies(view)) return false;
+  if (!response_ || view.layout->border_size() > 0 || !assembly_.applies(view)) return false;
   dynamics::ZeroRowSumMatrix& A = response_->step_matrix(assembly_.pattern());
   VecX r;
   assembly_.assemble(view, out.s, 1.0, H, H * H, r, A, options_.keep);
@@ -237,7 +237,7 @@ bool ModelReduction::factorise(const CoupledTool& tool, double H, StepResponses&
 
 void ModelReduction::prepare(const dynamics::State& state, double H) {
   const dynamics::StateView view = state.view();
-  if (!response_ || !assembly_.applies(view)) return;
+  if (!response_ || view.layout->border_size() > 0 || !assembly_.applies(view)) return;
   dynamics::ZeroRowSumMatrix& A = response_->step_matrix(assembly_.pattern());
   VecX r;
   assembly_.assemble(view, VecX::Zero(state.layout().u_size), 1.0, H, H * H, r, A, options_.keep);
