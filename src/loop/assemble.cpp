@@ -5,6 +5,7 @@
 #include "assemble_parts.h"
 #include "core/counters.h"
 #include "core/memory.h"
+#include "loop/choose_scheme.h"
 #include "loop/memory.h"
 #include "mesh/spatial_order.h"
 #include "mesh/tet_checks.h"
@@ -272,6 +273,8 @@ std::unique_ptr<World> assemble(const scene::Description& description, std::uniq
 
 std::unique_ptr<World> assemble(const scene::Description& description,
                                 std::vector<std::unique_ptr<device::Device>> hands) {
+  if (description.tool && description.exchange.scheme == scene::ExchangeScheme::kAuto)
+    return assemble(with_scheme(description, choose_scheme(description).scheme), std::move(hands));
   auto world = std::make_unique<World>();
   world->description = description;
   workers::set_count(description.integrator.threads);

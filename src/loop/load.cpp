@@ -101,16 +101,17 @@ scene::Kinds make_kinds() {
                  .selector = "law",
                  .kinds = kinds_of(contact::law_registry()),
                  .default_kind = [](const Description&) { return ContactSpec{}.law; }});
-  out.push_back(
-      {.table = "exchange",
-       .selector = "scheme",
-       .kinds = {{"partitioned", part_keys({"linearisation", "linearisation_error", "exchange_period_s",
-                                            "contact_refresh_s", "latency_ticks"})},
-                 {"monolithic", part_keys({"exchange_period_s", "contact_refresh_s"})},
-                 {"single_rate", part_keys({"exchange_period_s", "contact_refresh_s"})}},
-       .default_kind = [](const Description&) {
-         return std::string(name_of(scene::CosimulationSpec{}.scheme));
-       }});
+  const std::vector<PartKey> partitioned_keys = part_keys(
+      {"linearisation", "linearisation_error", "exchange_period_s", "contact_refresh_s", "latency_ticks"});
+  out.push_back({.table = "exchange",
+                 .selector = "scheme",
+                 .kinds = {{"partitioned", partitioned_keys},
+                           {"monolithic", part_keys({"exchange_period_s", "contact_refresh_s"})},
+                           {"single_rate", part_keys({"exchange_period_s", "contact_refresh_s"})},
+                           {"auto", partitioned_keys}},
+                 .default_kind = [](const Description&) {
+                   return std::string(name_of(scene::CosimulationSpec{}.scheme));
+                 }});
   out.push_back({.table = "exchange",
                  .selector = "tunnelling",
                  .kinds = {{"report"}, {"substep", part_keys({"shortest_refresh_s"})}},

@@ -161,7 +161,7 @@ void check_periods(const Document& doc, const Description& d) {
   const CosimulationSpec& c = d.exchange;
   const bool own = given(doc, "exchange.exchange_period_s");
   const double compared = d.compare.duration_s > 0.0 ? d.compare.duration_s : d.duration_s;
-  if (c.scheme == ExchangeScheme::kSingleRate) {
+  if (c.scheme == ExchangeScheme::kSingleRate || c.scheme == ExchangeScheme::kAuto) {
     const bool refresh = given(doc, "exchange.contact_refresh_s");
     for (const Hand& hand : hands_of(d)) {
       const std::string tick = hand.tool_key + ".tick_s";
@@ -209,7 +209,7 @@ void check_exchange(const Document& doc, Description& d) {
   if (!given(doc, "exchange.contact_refresh_s")) c.contact_refresh_s = c.exchange_period_s;
   if (d.tool)
     check_periods(doc, d);
-  else if (c.has_tools_in_state())
+  else if (c.scheme != ExchangeScheme::kPartitioned)
     refuse(location(doc, "exchange.scheme"), "exchange",
            fmt::format("scheme = \"{}\" needs a tool: there is nothing to couple without one",
                        name_of(c.scheme)));

@@ -3,6 +3,7 @@
 #include "core/clock.h"
 #include "core/counters.h"
 #include "core/time_text.h"
+#include "loop/choose_scheme.h"
 #include "palpate/core/error.h"
 #include "report/run_report.h"
 #include "session/clock_figures.h"
@@ -24,9 +25,18 @@ scene::Description with_record(scene::Description description, const Options& op
 
 }  // namespace
 
+/// Returns the scene with the chosen scheme, if it leaves the choice to the machine; a remark then gives the
+/// reason.
+scene::Description RunSession::chosen(const scene::Description& description) {
+  if (!description.tool || description.exchange.scheme != scene::ExchangeScheme::kAuto) return description;
+  const loop::SchemeChoice choice = loop::choose_scheme(description);
+  scheme_remark_ = choice.text();
+  return loop::with_scheme(description, choice.scheme);
+}
+
 RunSession::RunSession(const Options& options, const scene::Description& description, Resumption* resumption)
     : options_(options),
-      description_(with_record(description, options)),
+      description_(with_record(chosen(description), options)),
       resumption_(resumption),
       has_checkpoints_(options.checkpoint_every_s > 0.0 || resumption),
       passivity_(device::PassivityController::mode_of(options.passivity)) {
@@ -120,6 +130,7 @@ void RunSession::simulate(const Callbacks& callbacks) {
   }
   close_records();
   ran_.remarks = run_remarks(*world_, ran_.result);
+  if (!scheme_remark_.empty()) ran_.remarks.insert(ran_.remarks.begin(), scheme_remark_);
 }
 
 /// Closes the recorder, which then writes its sidecar, and the trace.

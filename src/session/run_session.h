@@ -58,6 +58,7 @@ class RunSession {
   std::string failure() const;
 
  private:
+  scene::Description chosen(const scene::Description& description);
   bool may_skip_ticks() const;
   void compare_with_monolithic(const Callbacks& callbacks);
   void compare_with_every_tick(const Callbacks& callbacks);
@@ -68,6 +69,7 @@ class RunSession {
   void close_records();
   std::string path(const char* file) const { return (std::filesystem::path(ran_.folder) / file).string(); }
 
+  std::string scheme_remark_;  ///< Reason of the choice for scheme = "auto".
   const Options options_;
   const scene::Description description_;
   Resumption* resumption_;

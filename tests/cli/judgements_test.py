@@ -223,6 +223,15 @@ class Judgements(Cli):
                       "--integrator", "cvode-bdf", "--set", "integrator.linear_solver=cholmod", "-o", "single")
             self.assertIn("bitwise identical", self.good("replay", "single"))
 
+    def test_the_choice_of_a_scheme_is_printed_and_kept(self):
+        text = self.good("run", "press-ball", "--duration-s", "0.05", "--set", "exchange.scheme=auto", "-o", "run")
+        chosen = re.search(r'(?m)^exchange\.scheme = "auto": (\w+), because a step of tool and bodies takes \S+ ms, ',
+                           text).group(1)
+        figures = json.loads((self.folder / "run/summary.json").read_text())["figures"]
+        self.assertEqual(figures["options"]["exchange_scheme"], chosen)
+        self.assertIn(f"exchange.scheme=\"{chosen}\"", (self.folder / "run/scene.toml").read_text())
+        self.assertIn("bitwise identical", self.good("replay", "run"))
+
     def test_each_of_two_hands_is_replayed_and_compared(self):
         text = self.good("run", "two-hands", "--duration-s", "0.2", "--against-monolithic", "-o", "first",
                          "--set", "compare.haptic.reference_rtol=1e-4",

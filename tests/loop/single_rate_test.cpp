@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/counters.h"
+#include "loop/choose_scheme.h"
 #include "palpate/core/error.h"
 #include "palpate/device/device.h"
 #include "palpate/loop/run.h"
@@ -172,6 +173,24 @@ TEST(SingleRate, DoesNotDependOnThreads) {
   const auto one = with(1), two = with(2);
   ASSERT_EQ(one.size(), two.size());
   for (std::size_t i = 0; i < one.size(); ++i) ASSERT_EQ(one[i].requested.force, two[i].requested.force) << i;
+}
+
+// The choice of "auto": no machine steps a block in half a microsecond, and each does in 20 ms.
+TEST(SingleRate, IsChosenWhereAStepFitsATick) {
+  for (const double tick_s : {1e-6, 0.04}) {
+    scene::Description d = press(Scheme::kAuto, tick_s);
+    d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 10 * tick_s;
+    const loop::SchemeChoice choice = loop::choose_scheme(d);
+    const bool fits = tick_s > 1e-3;
+    EXPECT_EQ(choice.scheme, fits ? Scheme::kSingleRate : Scheme::kPartitioned);
+    EXPECT_GT(choice.step_s, 0.5e-6);
+    EXPECT_LT(choice.step_s, 0.02);
+    EXPECT_NE(choice.text().find(fits ? "single_rate, because" : "partitioned, because"), std::string::npos)
+        << choice.text();
+    const auto world = loop::assemble(d);
+    EXPECT_EQ(world->description.exchange.scheme, choice.scheme);
+    EXPECT_EQ(world->monolithic(), fits);
+  }
 }
 
 /// Keeps ticks, and holds the loop up at some periods.

@@ -65,11 +65,12 @@ struct CompareSpec {
 
 /// Coupling of tools and bodies: tools step separately, at the haptic rate, and exchange contact records with
 /// the bodies; tools are blocks of the State, and one integrator advances everything, with the handle's path
-/// known in advance; the same with a sampled handle and one advance of everything per haptic tick.
-enum class ExchangeScheme { kPartitioned, kMonolithic, kSingleRate };
+/// known in advance; the same with a sampled handle and one advance of everything per haptic tick; or the
+/// last, where the machine holds its rate, else the first.
+enum class ExchangeScheme { kPartitioned, kMonolithic, kSingleRate, kAuto };
 /// Returns the names of the values.
-constexpr std::array<std::string_view, 3> option_names(ExchangeScheme) {
-  return {"partitioned", "monolithic", "single_rate"};
+constexpr std::array<std::string_view, 4> option_names(ExchangeScheme) {
+  return {"partitioned", "monolithic", "single_rate", "auto"};
 }
 
 /// Treatment of bodies that may pass through each other between two refreshes of contact: count the events,
@@ -102,7 +103,9 @@ struct CosimulationSpec {
   int latency_ticks = 0;
 
   /// Returns whether tools are blocks of the State.
-  bool has_tools_in_state() const { return scheme != ExchangeScheme::kPartitioned; }
+  bool has_tools_in_state() const {
+    return scheme == ExchangeScheme::kMonolithic || scheme == ExchangeScheme::kSingleRate;
+  }
 };
 
 /// Additional hand: a `[[hand]]` table of the scene.
