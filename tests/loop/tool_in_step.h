@@ -6,7 +6,7 @@ namespace palpate::tool_in_step {
 /// A tool presses beside the centre of a block and slides, in steps of a tick.
 inline scene::Description pressed(double shift = 0.004) {
   scene::Description d = small_scenes::pressed_block(0.0);
-  d.exchange.scheme = "monolithic";
+  d.exchange.scheme = scene::ExchangeScheme::kMonolithic;
   d.exchange.contact_refresh_s = d.exchange.exchange_period_s = d.integrator.step_s = 1e-3;
   d.bodies[0].mesh.element_size_m = 0.005;
   d.contacts[0].damping_pa_s_m = 1e4;
