@@ -5,12 +5,12 @@
 #include <memory>
 
 #include "bindings.h"
+#include "context_of_call.h"
 #include "interrupt.h"
 #include "missing_models.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 #include "palpate/loop/load.h"
-#include "render/available.h"
 #include "scene.h"
 #include "session/recorded_movie.h"
 #include "session/recorded_scene.h"
@@ -74,11 +74,6 @@ std::vector<std::string> files_of(const scene::Description& description, const s
   for (const std::string& name : session::run_files(description, folder)) out.push_back(folder + "/" + name);
   return out;
 }
-
-/// Scope guard: releases the GL context of a call, so that the next one may come from another thread.
-struct ContextOfCall {
-  ~ContextOfCall() { render::release_context(); }
-};
 
 py::dict run_to_end(const session::Options& options, const scene::Description& description,
                     session::Resumption* resumption) {
