@@ -112,13 +112,13 @@ py::dict resume(const std::string& folder) {
     if (PyErr_WarnEx(PyExc_RuntimeWarning, line.c_str(), 1) != 0) throw py::error_already_set();
   const scene::Description description = session::scene_to_resume(
       resumption,
-      [](const session::SceneArguments& scene) { return loop::load(scene.scene, scene.changes()); });
+      [](const scene::SceneArguments& scene) { return loop::load(scene.scene, scene.changes()); });
   return run_to_end(resumption.identity.options, description, &resumption);
 }
 
 std::string movie(const session::MovieOptions& options) {
   const ContextOfCall context;
-  session::MissingOutputs missing;
+  MissingOutputs missing;
   session::DrawnFrames drawn;
   without_gil([&](const session::Callbacks& callbacks) {
     drawn = session::draw_recorded_movie(

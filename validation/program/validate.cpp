@@ -144,7 +144,7 @@ void write_results(const Run& run, const std::string& folder, MissingOutputs& mi
   store::write_atomically(path, Json{{"cases", run.cases}}.dump(2) + "\n");
   const report::RunReport written = report::write_run_report(folder);
   fmt::print("written: {}, {}\n", path, written.page.string());
-  missing.add(written);
+  report::add_missing(written, missing);
 }
 
 TaskFolder::Use use_of(const ValidateArguments& arguments) {
