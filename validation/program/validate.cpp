@@ -210,6 +210,11 @@ int validate(const ValidateArguments& arguments) {
   fmt::print("{} of {} {}{}\n", done - static_cast<std::size_t>(out.failed), done,
              arguments.inject_faults ? "faults make their cases fail" : "cases meet their acceptance limits",
              done < runs.size() ? fmt::format("; stopped before the other {}", runs.size() - done) : "");
+  if (outcome.stopped) {
+    fmt::print(stderr, "palpate: stopped{}\n",
+               tasks.folder().empty() ? "" : "; the same command resumes from " + tasks.folder());
+    return kExitStopped;
+  }
   return missing.close(out.failed > 0 ? kExitError : 0);
 }
 
