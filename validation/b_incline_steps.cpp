@@ -83,7 +83,7 @@ double way_of(scene::Description d, const std::string& fault) {
   // A step solves for friction at its end: no added term can remove a part of it, so the law itself is
   // changed.
   if (fault == "half-friction") d.contacts[0].friction *= 0.5;
-  if (fault == "friction-of-the-start") d.contacts[0].friction_tangent = "symmetric";
+  if (fault == "friction-of-the-start") d.contacts[0].friction_tangent = FrictionTangent::kSymmetric;
   const auto world = loop::assemble(d);
   const auto place = [&] { return world->positions(world->bodies[0]).row(0).mean(); };
   const double start = place();

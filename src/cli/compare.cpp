@@ -108,7 +108,7 @@ void show(const compare::Comparison& comparison, const std::string& folder, Miss
   if (table.rows.empty()) return;
   const report::RunReport written = report::write_run_report(folder);
   fmt::print("written: {}\n", written.page.string());
-  missing.add(written);
+  report::add_missing(written, missing);
 }
 
 }  // namespace

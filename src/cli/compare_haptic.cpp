@@ -155,7 +155,7 @@ int compare_haptic(const CompareArguments& arguments) {
   }
   MissingOutputs missing;
   tasks.add_missing(outcome, missing);
-  missing.add(written);
+  report::add_missing(written, missing);
   add_missing(comparison, missing);
   return missing.close(0);
 }

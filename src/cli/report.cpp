@@ -27,7 +27,7 @@ int report(const ReportArguments& arguments) {
   const report::RunReport written = report::write_report(folders, page);
   fmt::print("written: {}\n", written.page.string());
   MissingOutputs missing;
-  missing.add(written);
+  report::add_missing(written, missing);
   return missing.close(0);
 }
 

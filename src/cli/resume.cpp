@@ -26,7 +26,7 @@ int resume(const ResumeArguments& arguments) {
   for (const std::string& line : session::processor_differences(resumption))
     fmt::print(stderr, "palpate: {}\n", line);
   const scene::Description description = session::scene_to_resume(
-      resumption, [](const session::SceneArguments& scene) { return cli::scene_of(scene); });
+      resumption, [](const scene::SceneArguments& scene) { return cli::scene_of(scene); });
   fmt::print("{} resumes at t = {} s\n", arguments.run, time_text(resumption.checkpoint.time_s));
   MissingOutputs missing;
   return missing.close(resume_run(resumption, description, missing));

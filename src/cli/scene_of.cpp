@@ -10,7 +10,7 @@
 
 namespace palpate::cli {
 
-scene::Description scene_of(const session::SceneArguments& arguments) {
+scene::Description scene_of(const scene::SceneArguments& arguments) {
   scene::Description description = loop::load(find_scene(arguments.scene), arguments.changes());
   for (const std::string& key : description.not_carried_over)
     fmt::print(stderr,

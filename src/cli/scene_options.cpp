@@ -14,7 +14,7 @@ void add_beyond_memory(CLI::App& command) {
       "continue even if the scene probably needs more memory than is available");
 }
 
-void add_scene(CLI::App& command, session::SceneArguments& scene, bool integrator) {
+void add_scene(CLI::App& command, scene::SceneArguments& scene, bool integrator) {
   command.add_option("SCENE", scene.scene, kSceneHelp)->required();
   command
       .add_option(

@@ -213,7 +213,7 @@ int stability_haptic(const StabilityArguments& a) {
   const std::vector<std::string> verdicts = verdicts_of(z, loop.tick_s, points, turning, scale);
   keep_summary(a, description, z, loop.coupling_damping_n_s_m, points, rotation, turning, verdicts, folder);
   const report::RunReport written = report::write_run_report(folder);
-  missing.add(written);
+  report::add_missing(written, missing);
   fmt::print("\nwritten: {}\n", written.page.string());
   for (const std::string& verdict : verdicts) fmt::print("{}\n", verdict);
   if (z.stopped) return kExitStopped;

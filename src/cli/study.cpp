@@ -227,7 +227,7 @@ int study(const StudyArguments& arguments) {
     missing.add(fmt::format("result of task{} {}", results.missing.size() == 1 ? "" : "s",
                             experiments::text_of(results.missing)),
                 arguments.array.slurm ? tasks.lost() : why_lost(outcome));
-  missing.add(written);
+  report::add_missing(written, missing);
   return missing.close(0);
 }
 

@@ -313,6 +313,10 @@ std::vector<PairReport> ContactForce::pairs() const {
   return out;
 }
 
+std::size_t ContactForce::pair_count() const { return impl_->pairs.size(); }
+
+double ContactForce::deepest(std::size_t pair) const { return impl_->pairs.at(pair).deepest; }
+
 void ContactForce::keep_views() {
   for (const auto& pair : impl_->pairs) pair.source->keep_view();
 }

@@ -32,6 +32,7 @@ PressureLaw pressure_law(const ContactSpec& spec) {
   if (!per_point && spec.spring != "per_area")
     fail("contact \"{}\" with \"{}\": unknown spring \"{}\"{}", spec.first, spec.second, spec.spring,
          suggestion(spec.spring, names(spring_registry())));
+  const bool secant = spec.friction_tangent == FrictionTangent::kSecant;
   PressureLaw law{PressureLaw::Kind::kKelvinVoigt,
                   per_point ? spec.stiffness_n_m : spec.stiffness_pa_m,
                   per_point ? spec.damping_n_s_m : spec.damping_pa_s_m,
@@ -40,12 +41,9 @@ PressureLaw pressure_law(const ContactSpec& spec) {
                   spec.friction_regularisation_m_s > 0.0 ? spec.friction_regularisation_m_s
                                                          : PressureLaw().regularisation,
                   spec.friction_retardation_s,
-                  spec.friction_tangent == "symmetric" || spec.friction_tangent == "secant",
+                  secant || spec.friction_tangent == FrictionTangent::kSymmetric,
                   per_point,
-                  spec.friction_tangent == "secant"};
-  if (!law.symmetric_tangent && spec.friction_tangent != "full" && spec.friction_tangent != "auto")
-    fail("contact \"{}\" with \"{}\": unknown friction_tangent \"{}\"{}", spec.first, spec.second,
-         spec.friction_tangent, suggestion(spec.friction_tangent, {"auto", "full", "secant", "symmetric"}));
+                  secant};
   if (spec.law == "kelvin_voigt") return law;
   if (spec.law != "hunt_crossley")
     fail("contact \"{}\" with \"{}\": unknown law \"{}\"{}", spec.first, spec.second, spec.law,

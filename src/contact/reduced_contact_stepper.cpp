@@ -54,7 +54,7 @@ struct TickPoint {
 };
 
 PressureLaw law_of_ticks(ContactSpec spec) {
-  spec.friction_tangent = "secant";
+  spec.friction_tangent = FrictionTangent::kSecant;
   return pressure_law(spec);
 }
 

@@ -18,7 +18,7 @@ constexpr GLenum kScratchTarget = GL_COPY_WRITE_BUFFER;
 Buffer::Buffer() { glGenBuffers(1, &id_); }
 
 Buffer::~Buffer() {
-  if (id_ && Context::opened()) glDeleteBuffers(1, &id_);
+  if (id_) Context::destroy(ObjectKind::kBuffer, id_);
 }
 
 Buffer::Buffer(Buffer&& other) noexcept
@@ -63,7 +63,7 @@ void Buffer::bind_storage(unsigned index) const { glBindBufferBase(GL_SHADER_STO
 VertexArray::VertexArray() { glGenVertexArrays(1, &id_); }
 
 VertexArray::~VertexArray() {
-  if (id_ && Context::opened()) glDeleteVertexArrays(1, &id_);
+  if (id_) Context::destroy(ObjectKind::kVertexArray, id_);
 }
 
 VertexArray::VertexArray(VertexArray&& other) noexcept : id_(std::exchange(other.id_, 0)) {}

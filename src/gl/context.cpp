@@ -5,9 +5,12 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
+#include <mutex>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/counters.h"
@@ -101,14 +104,37 @@ std::string gl_string(GLenum name) {
   return text ? text : "";
 }
 
-bool g_opened = false;
+/// Deletes an object.  @pre the context is current on this thread
+void destroy_now(ObjectKind kind, unsigned id) {
+  switch (kind) {
+    case ObjectKind::kBuffer: glDeleteBuffers(1, &id); break;
+    case ObjectKind::kVertexArray: glDeleteVertexArrays(1, &id); break;
+    case ObjectKind::kTexture: glDeleteTextures(1, &id); break;
+    case ObjectKind::kFramebuffer: glDeleteFramebuffers(1, &id); break;
+    case ObjectKind::kProgram: glDeleteProgram(id); break;
+    case ObjectKind::kQuery: glDeleteQueries(1, &id); break;
+  }
+}
+
+std::atomic<bool> g_opened = false;
 
 }  // namespace
 
 struct Context::Handles {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
-  std::thread::id owner;
+  std::atomic<std::thread::id> owner;
+  std::mutex abandoned_mutex;
+  std::vector<std::pair<ObjectKind, unsigned>> abandoned;  ///< Objects to be deleted by the next owner.
+
+  void destroy_abandoned() {
+    std::vector<std::pair<ObjectKind, unsigned>> all;
+    {
+      const std::scoped_lock lock(abandoned_mutex);
+      all.swap(abandoned);
+    }
+    for (const auto& [kind, id] : all) destroy_now(kind, id);
+  }
 };
 
 // libepoxy opens its libraries itself, but aborts the process where they are missing; so they are tried
@@ -134,6 +160,14 @@ Context& Context::shared() {
 
 void Context::release_here() {
   if (opened()) instance().release();
+}
+
+void Context::destroy(ObjectKind kind, unsigned id) {
+  if (!opened()) return;
+  Handles& handles = *instance().handles_;
+  if (handles.owner.load() == std::this_thread::get_id()) return destroy_now(kind, id);
+  const std::scoped_lock lock(handles.abandoned_mutex);
+  handles.abandoned.emplace_back(kind, id);
 }
 
 bool Context::opened() { return g_opened; }
@@ -182,18 +216,24 @@ Context::~Context() {
 
 void Context::make_current() {
   const auto self = std::this_thread::get_id();
-  if (handles_->owner == self) return;
-  PALPATE_CHECK(handles_->owner == std::thread::id{},
-                "the GL context is current on another thread, which has to release it first");
-  PALPATE_CHECK(eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles_->context),
-                "eglMakeCurrent failed, EGL error {:#x}", static_cast<unsigned>(eglGetError()));
-  handles_->owner = self;
+  if (handles_->owner.load() == self) return;
+  std::thread::id none;
+  if (!handles_->owner.compare_exchange_strong(none, self))
+    fail(
+        "OpenGL is in use by another thread of this process, and only one can use it at a time: step "
+        "simulations with method = \"image\", and draw pictures, one after another, or each in a separate "
+        "process");
+  if (!eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles_->context)) {
+    handles_->owner = std::thread::id{};
+    PALPATE_CHECK(false, "eglMakeCurrent failed, EGL error {:#x}", static_cast<unsigned>(eglGetError()));
+  }
+  handles_->destroy_abandoned();
 }
 
 void Context::release() {
-  if (handles_->owner != std::this_thread::get_id()) return;
+  if (handles_->owner.load() != std::this_thread::get_id()) return;
   eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-  handles_->owner = {};
+  handles_->owner = std::thread::id{};
 }
 
 void check_context(const char* what) {

@@ -21,6 +21,9 @@ class ContextLost : public Error {
   using Error::Error;
 };
 
+/// Kinds of objects of the context.
+enum class ObjectKind { kBuffer, kVertexArray, kTexture, kFramebuffer, kProgram, kQuery };
+
 /// The process's GL context (OpenGL 4.5 core, or 4.3).  No GL library is loaded before the first call of
 /// shared().  It is current on one thread: make_current() acquires it, release() lets another thread acquire
 /// it.
@@ -28,17 +31,21 @@ class Context {
  public:
   /// Creates the context at the first call, and makes it current on the calling thread.  A hardware device is
   /// preferred; else Mesa's software rasteriser is used.  Counts "gl.context".
-  /// @throws Error when no EGL library, device or OpenGL >= 4.3 is found, with the package that provides it
+  /// @throws Error when no EGL library, device or OpenGL >= 4.3 is found, with the package that provides it,
+  /// and where the context is current on another thread
   static Context& shared();
   static bool opened();  ///< Whether the context exists; does not create it.
   /// Releases the context, if it exists and is current on this thread.  Never throws.
   static void release_here();
+  /// Deletes an object of the context: now where the context is current on this thread, else when it becomes
+  /// current next.  Without effect where the context is gone, and its objects with it.
+  static void destroy(ObjectKind kind, unsigned id);
 
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  void make_current();  ///< @throws InternalError when it is current on another thread
+  void make_current();  ///< @throws Error where it is current on another thread
   void release();       ///< Makes it no longer current on this thread.
   const ContextInfo& info() const { return info_; }
 

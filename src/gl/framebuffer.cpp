@@ -49,7 +49,7 @@ Texture::Texture(int width, int height, Format format) : width_(width), height_(
 }
 
 Texture::~Texture() {
-  if (id_ && Context::opened()) glDeleteTextures(1, &id_);
+  if (id_) Context::destroy(ObjectKind::kTexture, id_);
 }
 
 Texture::Texture(Texture&& other) noexcept
@@ -104,7 +104,7 @@ Framebuffer::Framebuffer(int width, int height, const std::vector<Format>& colou
 }
 
 Framebuffer::~Framebuffer() {
-  if (id_ && Context::opened()) glDeleteFramebuffers(1, &id_);
+  if (id_) Context::destroy(ObjectKind::kFramebuffer, id_);
 }
 
 Framebuffer::Framebuffer(Framebuffer&& other) noexcept

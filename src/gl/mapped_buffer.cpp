@@ -20,7 +20,7 @@ MappedBuffer::MappedBuffer(For use) : use_(use) {
 MappedBuffer::~MappedBuffer() { release(); }
 
 void MappedBuffer::release() {
-  if (id_ && Context::opened()) glDeleteBuffers(1, &id_);  // Also unmaps it.
+  if (id_) Context::destroy(ObjectKind::kBuffer, id_);  // Also unmaps it.
   id_ = 0;
   data_ = nullptr;
 }

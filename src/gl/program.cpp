@@ -90,7 +90,7 @@ Program::Program(std::string_view compute) : name_(compute) {
 }
 
 Program::~Program() {
-  if (id_ && Context::opened()) glDeleteProgram(id_);
+  if (id_) Context::destroy(ObjectKind::kProgram, id_);
 }
 
 Program::Program(Program&& other) noexcept

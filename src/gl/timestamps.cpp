@@ -17,7 +17,7 @@ Timestamps::Timestamps(int count) {
 }
 
 Timestamps::~Timestamps() {
-  if (!ids_.empty() && Context::opened()) glDeleteQueries(static_cast<GLsizei>(ids_.size()), ids_.data());
+  for (const unsigned id : ids_) Context::destroy(ObjectKind::kQuery, id);
 }
 
 void Timestamps::mark(int which) {

@@ -260,10 +260,10 @@ void add_contact(World& world, ContactSpec& given, ToolProxies& proxies) {
   // Steps of a single linear solve need the secant tangent, although it does not make the matrix symmetric if
   // other parts of a tool's rows are omitted: with the full tangent, sliding friction reverses the nodes'
   // velocity in each step and does not hold.
-  if (spec.friction_tangent == "auto")
-    spec.friction_tangent = steps_are_linearised(world) ? "secant" : "full";
+  if (spec.friction_tangent == FrictionTangent::kAuto)
+    spec.friction_tangent = steps_are_linearised(world) ? FrictionTangent::kSecant : FrictionTangent::kFull;
   // No step matrix contains tools with separate ticks; their ticks are a single solve each.
-  if (world.find_tool(spec.first) && !world.monolithic()) spec.friction_tangent = "secant";
+  if (world.find_tool(spec.first) && !world.monolithic()) spec.friction_tangent = FrictionTangent::kSecant;
   world.contact->add_pair(source_of(world, spec, proxies), spec);
   ToolInstance* const tool = world.find_tool(spec.second);
   if (tool && tool->partitioned() && world.find_body(spec.first))

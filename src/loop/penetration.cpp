@@ -31,26 +31,36 @@ double depth_within_itself(const Body& body) {
   return contact::own_contact_depth(contact::lengths_of(body.skin ? body.skin->rest : body.boundary.surface));
 }
 
+PenetrationReport report_of(const World& world, std::size_t i, const contact::PairReport& pair) {
+  const ContactSpec& contact = world.description.contacts[i];
+  PenetrationReport out{fmt::format("{} - {}", contact.first, contact.second), pair.deepest, HUGE_VAL,
+                        contact.first == contact.second};
+  if (const contact::SumError* error = pair.sum_error) {
+    out.quadrature_error = error->largest();
+    out.largest_share = error->largest_share();
+  }
+  if (out.deepest_m > 0.0) out.half_width_m = penetration_limit(world, i);
+  return out;
+}
+
 }  // namespace
+
+double penetration_limit(const World& world, std::size_t contact) {
+  const ContactSpec& spec = world.description.contacts.at(contact);
+  if (spec.first == spec.second)
+    return PenetrationReport::kOwnShare * depth_within_itself(*world.find_body(spec.first));
+  return std::min(half_width(world, spec.first), half_width(world, spec.second));
+}
+
+PenetrationReport penetration_report(const World& world, std::size_t contact) {
+  return report_of(world, contact, world.contact->pairs().at(contact));
+}
 
 std::vector<PenetrationReport> penetration_reports(const World& world) {
   std::vector<PenetrationReport> out;
   if (!world.contact) return out;
-  const std::vector<contact::PairReport> pairs = world.contact->pairs();
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const ContactSpec& contact = world.description.contacts[i];
-    PenetrationReport one{fmt::format("{} - {}", contact.first, contact.second), pairs[i].deepest, HUGE_VAL,
-                          contact.first == contact.second};
-    if (const contact::SumError* error = pairs[i].sum_error) {
-      one.quadrature_error = error->largest();
-      one.largest_share = error->largest_share();
-    }
-    if (one.deepest_m > 0.0 && one.of_itself)
-      one.half_width_m = PenetrationReport::kOwnShare * depth_within_itself(*world.find_body(contact.first));
-    else if (one.deepest_m > 0.0)
-      one.half_width_m = std::min(half_width(world, contact.first), half_width(world, contact.second));
-    out.push_back(one);
-  }
+  for (const contact::PairReport& pair : world.contact->pairs())
+    out.push_back(report_of(world, out.size(), pair));
   return out;
 }
 

@@ -23,6 +23,12 @@ struct PenetrationReport {
   bool too_deep() const { return deepest_m > half_width_m; }
 };
 
+/// Returns PenetrationReport::half_width_m of a [[contact]], by its number, as where its sides touch.
+double penetration_limit(const World& world, std::size_t contact);
+
+/// Returns the entry of one [[contact]], by its number.
+PenetrationReport penetration_report(const World& world, std::size_t contact);
+
 /// Returns one entry per [[contact]] of the scene.
 std::vector<PenetrationReport> penetration_reports(const World& world);
 

@@ -29,16 +29,19 @@ void warn_of_penetration(const PenetrationReport& o, double t) {
 
 }  // namespace
 
-// The thickness of objects is computed only when an overlap exceeds the last one that was checked.
+// Called at each period and query: only numbers until a warning is due.  The limit of a contact is computed
+// at its first touch.
 void PenetrationWarning::check(const World& world, double t) {
   if (!world.contact) return;
-  const std::vector<contact::PairReport> pairs = world.contact->pairs();
-  if (checked_to_.empty()) checked_to_.assign(pairs.size(), 0.0);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (!(pairs[i].deepest > checked_to_[i])) continue;
-    const PenetrationReport o = penetration_reports(world)[i];
-    checked_to_[i] = o.too_deep() ? HUGE_VAL : o.half_width_m;
-    if (o.too_deep()) o.of_itself ? warn_of_own_penetration(o, t) : warn_of_penetration(o, t);
+  const std::size_t pairs = world.contact->pair_count();
+  if (checked_to_.empty()) checked_to_.assign(pairs, 0.0);
+  for (std::size_t i = 0; i < pairs; ++i) {
+    if (!(world.contact->deepest(i) > checked_to_[i])) continue;
+    checked_to_[i] = penetration_limit(world, i);
+    if (!(world.contact->deepest(i) > checked_to_[i])) continue;
+    checked_to_[i] = HUGE_VAL;
+    const PenetrationReport o = penetration_report(world, i);
+    o.of_itself ? warn_of_own_penetration(o, t) : warn_of_penetration(o, t);
   }
 }
 

@@ -5,12 +5,12 @@
 #include <memory>
 
 #include "bindings.h"
+#include "context_of_call.h"
 #include "interrupt.h"
 #include "missing_models.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 #include "palpate/loop/load.h"
-#include "render/available.h"
 #include "scene.h"
 #include "session/recorded_movie.h"
 #include "session/recorded_scene.h"
@@ -75,11 +75,6 @@ std::vector<std::string> files_of(const scene::Description& description, const s
   return out;
 }
 
-/// Scope guard: releases the GL context of a call, so that the next one may come from another thread.
-struct ContextOfCall {
-  ~ContextOfCall() { render::release_context(); }
-};
-
 py::dict run_to_end(const session::Options& options, const scene::Description& description,
                     session::Resumption* resumption) {
   refuse_missing_models(description);
@@ -117,13 +112,13 @@ py::dict resume(const std::string& folder) {
     if (PyErr_WarnEx(PyExc_RuntimeWarning, line.c_str(), 1) != 0) throw py::error_already_set();
   const scene::Description description = session::scene_to_resume(
       resumption,
-      [](const session::SceneArguments& scene) { return loop::load(scene.scene, scene.changes()); });
+      [](const scene::SceneArguments& scene) { return loop::load(scene.scene, scene.changes()); });
   return run_to_end(resumption.identity.options, description, &resumption);
 }
 
 std::string movie(const session::MovieOptions& options) {
   const ContextOfCall context;
-  session::MissingOutputs missing;
+  MissingOutputs missing;
   session::DrawnFrames drawn;
   without_gil([&](const session::Callbacks& callbacks) {
     drawn = session::draw_recorded_movie(

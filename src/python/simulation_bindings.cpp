@@ -6,6 +6,7 @@
 #include "bindings.h"
 #include "body.h"
 #include "contact.h"
+#include "context_of_call.h"
 #include "hand.h"
 #include "interrupt.h"
 #include "missing_models.h"
@@ -26,6 +27,7 @@ auto interruptible(Simulation& self, const Step& step) {
   try {
     const auto out = [&] {
       const py::gil_scoped_release release;
+      const ContextOfCall context;
       const Interrupt interrupt(self.stop(), main);
       return step();
     }();
@@ -40,6 +42,7 @@ auto interruptible(Simulation& self, const Step& step) {
 Shared make_simulation(const Scene& scene, double duration_s) {
   const py::gil_scoped_release release;
   refuse_missing_models(scene.description());
+  const ContextOfCall context;
   return std::make_shared<Simulation>(scene.description(), duration_s);
 }
 

@@ -1,5 +1,10 @@
 #include "report/run_report.h"
 
+#include <fmt/format.h>
+
+#include <map>
+
+#include "core/missing_outputs.h"
 #include "palpate/core/error.h"
 #include "result.h"
 
@@ -39,6 +44,17 @@ RunReport write_report(const std::vector<fs::path>& dirs, const fs::path& path) 
     page.end_part();
   }
   return written(page, path);
+}
+
+void add_missing(const RunReport& report, MissingOutputs& missing) {
+  const auto first_line = [](const std::string& text) { return text.substr(0, text.find('\n')); };
+  std::map<std::string, std::vector<std::string>> captions;  // by reason, which captions often share
+  for (const auto& figure : report.missing_figures)
+    captions[first_line(figure.why)].push_back(first_line(figure.caption));
+  for (const auto& [why, figures] : captions)
+    missing.add(figures.size() == 1 ? fmt::format("figure \"{}\" in {}", figures[0], report.page.string())
+                                    : fmt::format("{} figures in {}", figures.size(), report.page.string()),
+                why);
 }
 
 }  // namespace palpate::report

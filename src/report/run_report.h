@@ -4,6 +4,10 @@
 
 #include "report/page.h"
 
+namespace palpate {
+class MissingOutputs;
+}
+
 namespace palpate::report {
 
 /// Written page, and the figures that are missing from it.
@@ -26,5 +30,8 @@ RunReport write_report(const std::vector<std::filesystem::path>& dirs, const std
 
 /// Writes the page of one directory, DIR/report.html.
 RunReport write_run_report(const std::filesystem::path& dir);
+
+/// Adds the figures that are missing from a page, grouped by reason, to the missing outputs of a command.
+void add_missing(const RunReport& report, MissingOutputs& missing);
 
 }  // namespace palpate::report

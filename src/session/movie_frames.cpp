@@ -5,9 +5,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/missing_outputs.h"
 #include "palpate/core/error.h"
 #include "render/seen.h"
-#include "session/missing_outputs.h"
 
 namespace palpate::session {
 namespace {

@@ -8,9 +8,11 @@
 #include "session/frame_sink.h"
 #include "session/snapshot_spool.h"
 
-namespace palpate::session {
-
+namespace palpate {
 class MissingOutputs;
+}
+
+namespace palpate::session {
 
 /// Returns the simulated time between frames [s], a multiple of the period of the loop, in which snapshots
 /// can be taken.

@@ -1,24 +1,15 @@
 #pragma once
 #include <string>
-#include <vector>
+
+#include "scene/scene_arguments.h"
 
 namespace palpate::session {
 
-/// Scene as a user specified it, and the changes to it.
-struct SceneArguments {
-  std::string scene;                   ///< Path or name; empty: made from a text, which checkpoints keep
-  std::vector<std::string> overrides;  ///< Changes of keys: "body.0.youngs_modulus_pa=1e5"
-  std::string integrator;              ///< Integrator that replaces the one of the scene; empty: unchanged
-
-  /// Returns all changes as overrides.
-  std::vector<std::string> changes() const;
-};
-
 /// Options of a run. Messages about them name the options of `palpate run`, which have the same names.
 struct Options {
-  SceneArguments scene;     ///< Kept in summary.json and in checkpoints
-  std::string folder;       ///< Output folder; empty: out/NAME, and only if there is a file to write
-  double duration_s = 0.0;  ///< Simulated time [s]; 0: the duration of the scene
+  scene::SceneArguments scene;  ///< Kept in summary.json and in checkpoints
+  std::string folder;           ///< Output folder; empty: out/NAME, and only if there is a file to write
+  double duration_s = 0.0;      ///< Simulated time [s]; 0: the duration of the scene
   bool picture = false, report = false, trace = false, real_time = false;
   bool contact_picture = false, frames = false;
   double frames_per_s = 0.0;           ///< Frames per second of simulated time; 0: as the scene records

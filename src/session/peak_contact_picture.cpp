@@ -7,12 +7,12 @@
 #include <map>
 #include <numbers>
 
+#include "core/missing_outputs.h"
 #include "core/time_text.h"
 #include "palpate/core/error.h"
 #include "render/field.h"
 #include "render/marks.h"
 #include "render/panels.h"
-#include "session/missing_outputs.h"
 
 namespace palpate::session {
 namespace {

@@ -4,9 +4,11 @@
 #include "loop/contact_instant.h"
 #include "session/world_snapshot.h"
 
-namespace palpate::session {
-
+namespace palpate {
 class MissingOutputs;
+}
+
+namespace palpate::session {
 
 /// Observer that keeps the contact query with the largest contact force of a run, for two pictures like
 /// Figures 4 and 5 of Galoppo et al. (2007).

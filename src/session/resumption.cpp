@@ -35,10 +35,11 @@ Resumption read_resumption(const std::string& folder) {
   return out;
 }
 
-scene::Description scene_to_resume(const Resumption& resumption,
-                                   const std::function<scene::Description(const SceneArguments&)>& load) {
+scene::Description scene_to_resume(
+    const Resumption& resumption,
+    const std::function<scene::Description(const scene::SceneArguments&)>& load) {
   const std::string& text = resumption.checkpoint.scene_source;
-  SceneArguments scene = resumption.identity.options.scene;
+  scene::SceneArguments scene = resumption.identity.options.scene;
   const bool has_file = !scene.scene.empty();
   scene.scene = resumption.identity.scene_path;
   if (!has_file) return loop::parse(text, scene.scene);

@@ -29,8 +29,9 @@ Resumption read_resumption(const std::string& folder);
 /// text.
 /// @param load  function that loads and checks a scene, given by the absolute path of its file
 /// @throws Error if the file no longer exists, or if the scene has changed since the run began
-scene::Description scene_to_resume(const Resumption& resumption,
-                                   const std::function<scene::Description(const SceneArguments&)>& load);
+scene::Description scene_to_resume(
+    const Resumption& resumption,
+    const std::function<scene::Description(const scene::SceneArguments&)>& load);
 
 /// Returns the differences between the processor on which the run began and this one, which change the
 /// rounding of the rest of the run: one line per difference.

@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "core/missing_outputs.h"
 #include "experiments/compare/monolithic.h"
 #include "loop/checkpoints.h"
 #include "loop/run_figures.h"
 #include "palpate/loop/run.h"
-#include "session/missing_outputs.h"
 
 namespace palpate::session {
 

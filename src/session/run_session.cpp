@@ -177,7 +177,7 @@ void RunSession::write_results() {
   if (ran_.is_complete()) remove_checkpoint(ran_.folder);
   if (ran_.result.real_time) write_clock(*ran_.result.real_time, ran_.folder);
   pictures_->save_pictures(*world_, ran_.missing);
-  if (options_.report) ran_.missing.add(report::write_run_report(ran_.folder));
+  if (options_.report) report::add_missing(report::write_run_report(ran_.folder), ran_.missing);
 }
 
 void RunSession::draw_frames(const Callbacks& callbacks) {

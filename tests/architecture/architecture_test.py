@@ -212,6 +212,7 @@ class Planted(unittest.TestCase):
         self.assertEqual(breaches_of({"src/fem/long.cpp": "\n" * 400}), [])
         self.expect({"src/fem/long.cpp": "\n" * 401}, "src/fem/long.cpp:401:", "401 lines")
         self.expect({"tests/fem/long_test.cpp": "\n" * 500}, "tests/fem/long_test.cpp", "500 lines")
+        self.expect({"tests/cli/long_test.py": "\n" * 401}, "tests/cli/long_test.py:401:", "401 lines")
 
 
 

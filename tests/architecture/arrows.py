@@ -248,10 +248,10 @@ def cycle_breaches(graph):
             for part, groups in sorted(unit_cycles(graph).items()) for units in groups]
 
 
-def source_files(tree, folders):
+def source_files(tree, folders, suffixes=frozenset(SUFFIXES)):
     return sorted(path.relative_to(tree).as_posix()
                   for folder in folders for path in (tree / folder).rglob("*")
-                  if path.suffix in SUFFIXES)
+                  if path.suffix in suffixes)
 
 
 def check(tree):
@@ -296,6 +296,9 @@ def check(tree):
                                                                   for folder in folders):
                     breaches.append(
                         f"{path}:{number}: {library} ({name}) belongs in {', '.join(folders)} only")
+
+    for path in files + source_files(tree, ["tests"]) + source_files(
+            tree, ["src", "validation", "benchmarks", "tests"], {".py"}):
         lines = (tree / path).read_text(encoding="utf-8", errors="replace").count("\n")
         if lines > LONG_FILE:
             breaches.append(f"{path}:{LONG_FILE + 1}: {lines} lines, more than {LONG_FILE}: split it")

@@ -316,7 +316,8 @@ class Interrupt(Cli):
         self.assertIn("resumes from cut", err)
 
     def test_validate_ends_cases_that_take_minutes(self):
-        process = subprocess.Popen([str(PROGRAM), "validate", "vibration-tolerance", "rigid-motion"],
+        process = subprocess.Popen([str(PROGRAM), "validate", "vibration-tolerance", "rigid-motion", "-o",
+                                    "cut"],
                                    cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         time.sleep(3)
         process.send_signal(signal.SIGINT)
@@ -326,6 +327,7 @@ class Interrupt(Cli):
         self.assertLess(time.monotonic() - start, 60)
         self.assertRegex(out, r"(0 of 0|1 of 1) cases meet their acceptance limits; "
                               r"stopped before the other [12]\n$")
+        self.assertEqual(err, "palpate: stopped; the same command resumes from cut\n")
 
     def test_progress_bar_on_a_terminal_with_time_left(self):
         terminal, end = open_terminal()

@@ -9,25 +9,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-BLOCK = """[scene]
-name = "block"
-duration_s = 0.02
-gravity_m_s2 = [0.0, 0.0, -9.81]
-[[body]]
-name = "block"
-youngs_modulus_pa = 1e4
-stiffness_damping_s = 2e-3
-[body.mesh]
-generator = "box"
-size_m = [0.04, 0.04, 0.02]
-element_size_m = 0.02
-[[body.attachment]]
-box_min_m = [-1.0, -1.0, -1.0]
-box_max_m = [1.0, 1.0, -0.0099]
-[integrator]
-name = "linearly-implicit-euler"
-step_s = 1e-3
-"""
+BLOCK = (Path(__file__).resolve().parents[1] / "experiments/study/block.toml").read_text()
 QUICK = """[study]
 scenes = ["block.toml"]
 integrators = ["cvode-bdf", "linearly-implicit-euler"]

@@ -166,7 +166,7 @@ TEST(Following, WithoutItARetardationChangesNoMatrix) {
     ContactSpec law;
     law.stiffness_pa_m = 1e3;
     law.friction = 0.4;
-    law.friction_tangent = "full";
+    law.friction_tangent = FrictionTangent::kFull;
     law.friction_retardation_s = retardation;
     term.add_pair(std::make_unique<ListSource>(touch.term.samples()), law);
     term.refresh(touch.world.state.view());

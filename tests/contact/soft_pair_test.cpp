@@ -146,11 +146,11 @@ TEST(SoftPair, PointStiffnessIsTheTangent) {
     ContactSpec with_all = law();
     with_all.damping_pa_s_m = 1e5;
     with_all.friction = friction;
-    with_all.friction_tangent = "full";
+    with_all.friction_tangent = FrictionTangent::kFull;
     contact::ContactForce full;
     full.add_pair(balls.source(true), with_all);
     EXPECT_EQ(full.is_point_stiffness(), friction == 0.0);
-    with_all.friction_tangent = "symmetric";
+    with_all.friction_tangent = FrictionTangent::kSymmetric;
     term.add_pair(balls.source(true), with_all);
     ASSERT_TRUE(term.is_point_stiffness());
     term.refresh(balls.state.view());

@@ -30,7 +30,8 @@ struct Scene {
   Twist given_twist{Vec3(0.4, 0.2, -0.7), Vec3(-0.3, 0.5, 0.1)};
   contact::ContactForce term;
 
-  explicit Scene(const Law& law, bool with_given = true, const std::string& friction_tangent = "full") {
+  explicit Scene(const Law& law, bool with_given = true,
+                 FrictionTangent friction_tangent = FrictionTangent::kFull) {
     given->append(0.0, given_pose, given_twist);
     const auto body = contact::block_frame(world.body_id);
     const int given_index = term.add_frame(given), body_index = term.add_frame(body);
@@ -128,7 +129,7 @@ TEST(ContactTangent, NodePartIsSymmetricWithoutFriction) {
 // assembled and applied forms agree; forces are unchanged.
 TEST(ContactTangent, SymmetricOneIsPositiveAndChangesNoForce) {
   for (const Law& law : {kLaws[2], kLaws[3]}) {
-    Scene scene(law, true, "symmetric"), full(law);
+    Scene scene(law, true, FrictionTangent::kSymmetric), full(law);
     const auto nodes = [](Scene& of, double k, double d) {
       return MatX(step_matrix(of.term, of.world.state, k, d).to_dense().topLeftCorner(18, 18));
     };
@@ -161,7 +162,7 @@ TEST(ContactTangent, TheFrictionLeftOutIsMeasured) {
   ContactSpec spec;
   spec.stiffness_pa_m = 2e3;
   spec.friction = 0.3;
-  spec.friction_tangent = "symmetric";
+  spec.friction_tangent = FrictionTangent::kSymmetric;
   constexpr double depth = 0.02, deeper = 0.005, area = 0.7;
   term.add_pair(std::make_unique<ListSource>(std::vector<contact::ContactSample>{
                     on_frame(node_point({0}, {1.0}), frame, Pose{}, {0, 0, 1}, depth, area, world.state)}),
@@ -187,7 +188,7 @@ TEST(ContactTangent, SecantTangentsEndWithTheirGuardAndAreNotMeasured) {
   const int frame = term.add_frame(contact::fixed_frame());
   ContactSpec spec;
   spec.friction = 0.3;
-  spec.friction_tangent = "full";
+  spec.friction_tangent = FrictionTangent::kFull;
   term.add_pair(std::make_unique<ListSource>(std::vector<contact::ContactSample>{
                     on_frame(node_point({0}, {1.0}), frame, Pose{}, {0, 0, 1}, 0.02, 0.7, world.state)}),
                 spec);
@@ -220,7 +221,7 @@ TEST(ContactTangent, TheSecantOfFrictionOpposesEveryVelocity) {
     spec.stiffness_pa_m = k;
     spec.friction = mu;
     spec.friction_regularisation_m_s = regularisation;
-    spec.friction_tangent = "secant";
+    spec.friction_tangent = FrictionTangent::kSecant;
     term.add_pair(std::make_unique<ListSource>(std::vector<contact::ContactSample>{
                       on_frame(node_point({0}, {1.0}), frame, Pose{}, {0, 0, 1}, depth, area, world.state)}),
                   spec);

@@ -69,7 +69,7 @@ ContactSpec spec_of(const Law& law) {
   out.hunt_crossley_s_m = 0.4;
   out.friction = law.friction;
   out.friction_regularisation_m_s = kSlipping;
-  out.friction_tangent = "full";
+  out.friction_tangent = FrictionTangent::kFull;
   out.onset_width_m = law.onset;
   return out;
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <thread>
 
 #include "core/counters.h"
@@ -68,7 +69,7 @@ TEST(GlContext, AnotherThreadTakesItOnlyAfterRelease) {
   std::thread([&] {
     try {
       context.make_current();
-    } catch (const InternalError& e) { refused = std::string(e.what()).find("release") != std::string::npos; }
+    } catch (const Error& e) { refused = std::string(e.what()).find("another thread") != std::string::npos; }
   }).join();
   context.release();
   std::thread([&] {
@@ -79,6 +80,20 @@ TEST(GlContext, AnotherThreadTakesItOnlyAfterRelease) {
   context.make_current();
   EXPECT_TRUE(refused);
   EXPECT_TRUE(taken);
+}
+
+TEST(GlContext, ObjectsThatAnotherThreadDropsAreDeletedByTheNextOwner) {
+  gl::Context& context = gl::Context::shared();
+  std::optional<gl::Buffer> here(std::in_place), there(std::in_place);
+  const unsigned first = here->id(), second = there->id();
+  for (gl::Buffer* buffer : {&*here, &*there}) buffer->upload("", 1);
+  here.reset();
+  EXPECT_FALSE(glIsBuffer(first));
+  std::thread([&] { there.reset(); }).join();
+  EXPECT_TRUE(glIsBuffer(second));
+  context.release();
+  context.make_current();
+  EXPECT_FALSE(glIsBuffer(second));
 }
 
 TEST(GlProgram, UnknownShaderAndUniformAreNamed) {

@@ -21,7 +21,7 @@ Case sliding_block() {
   law.method = "analytic";
   law.stiffness_pa_m = 1e7;
   law.friction = 0.4;
-  law.friction_tangent = "symmetric";
+  law.friction_tangent = FrictionTangent::kSymmetric;
   small_scenes::add_floor(d, law);
   return c;
 }

@@ -76,7 +76,7 @@ TEST(FrictionSolver, NoFamilyOfMethodsNeedsLu) {
     if (!entry.traits.implicit || entry.traits.stability == dynamics::Stability::kStatic) continue;
     if (!families.insert(entry.traits.family).second) continue;
     scene::Description d = sliding(entry.name, 0.3, 1e6);
-    d.contacts[0].friction_tangent = "full";
+    d.contacts[0].friction_tangent = FrictionTangent::kFull;
     const Ran krylov = run(d, "cholmod"), lu = run(d, "umfpack");
     EXPECT_EQ(krylov.lu, 0) << entry.name;
     EXPECT_EQ(krylov.left_to_lu, 0) << entry.name;

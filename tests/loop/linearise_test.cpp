@@ -100,24 +100,47 @@ TEST(Linearise, FrozenRecordRepeatsTheContactAtItsOwnPose) {
   EXPECT_GT(exact.force.z(), 0.0) << "the block pushes the tool up";
 }
 
-/// The pressed block in equilibrium with the tool, on a moving floor, and then struck: every term of the
-/// derivation contributes, and the changes over one period are so small that no sample opens or closes.
+/// The pressed block on a moving floor, with damping in the contact.
+scene::Description block_on_moving_floor() {
+  scene::Description d = pressed_block(0.002);
+  d.exchange.linearisation = "condensed";
+  d.contacts[0].damping_pa_s_m = 2e4;
+  KeyframeSpec start, end;
+  end.time_s = 3.0;
+  end.position_m = Vec3(2e-4, -1e-4, 3e-4);
+  end.interpolation = Interpolation::kLinear;
+  d.bodies[0].attachments[0].keyframes = {start, end};
+  d.integrator.linear_solver = "cholmod";  // differences of 1e-8 are taken between steps
+  return d;
+}
+
+/// The block with a free bone that carries nine nodes of its middle layer, off the axis of the tool.
+scene::Description block_around_free_bone() {
+  scene::Description d = block_on_moving_floor();
+  BoneSpec bone;
+  bone.name = "bone";
+  bone.shape = BoneShape::kBox;
+  bone.size_m = Vec3(0.0202, 0.0202, 0.004);
+  bone.position_m = Vec3(0.01, 0.0, 0.01);
+  bone.mass_kg = 1e-3;
+  bone.inertia_kg_m2 = Vec3(1e-7, 1e-7, 1e-7);
+  d.bones.push_back(bone);
+  AttachmentSpec tie;
+  tie.region = Selection::kShape;
+  tie.to = bone.name;
+  d.bodies[0].attachments.push_back(tie);
+  return d;
+}
+
+/// A pressed block in equilibrium with the tool, and then struck: every term of the derivation contributes,
+/// and the changes over one period are so small that no sample opens or closes.
 struct Struck {
   std::unique_ptr<loop::World> world;
   VecX q, u;
   double t0 = 0.0;
   Pose x0;
 
-  Struck() {
-    scene::Description d = pressed_block(0.002);
-    d.exchange.linearisation = "condensed";
-    d.contacts[0].damping_pa_s_m = 2e4;
-    KeyframeSpec start, end;
-    end.time_s = 3.0;
-    end.position_m = Vec3(2e-4, -1e-4, 3e-4);
-    end.interpolation = Interpolation::kLinear;
-    d.bodies[0].attachments[0].keyframes = {start, end};
-    d.integrator.linear_solver = "cholmod";  // differences of 1e-8 are taken between steps
+  explicit Struck(const scene::Description& d = block_on_moving_floor()) {
     world = loop::assemble(d);
     loop::RunOptions options;
     options.duration_s = 1.5;
@@ -161,10 +184,7 @@ struct Struck {
   }
 };
 
-// The bodies' own motion, after a tick and after the period: velocities, unbalanced forces, driven nodes and
-// damping.
-TEST(Linearise, CondensedRecordIsTheWrenchAfterOneImplicitStepOfMovingBodies) {
-  Struck s;
+void expect_wrench_after_one_step(Struck& s) {
   const double H = 0.01, tick = s.world->description.tool->tick_s;
   long fallbacks = 0;
   const dynamics::LinearisedContact record = record_of(*s.world, 1, H, fallbacks);
@@ -177,6 +197,24 @@ TEST(Linearise, CondensedRecordIsTheWrenchAfterOneImplicitStepOfMovingBodies) {
     ASSERT_GT(change, 1e-6 * now.norm()) << "the bodies move";
     EXPECT_LT((got - expected).norm(), 1e-6 * change) << "after " << h << " s";
   }
+}
+
+// The bodies' own motion, after a tick and after the period: velocities, unbalanced forces, driven nodes and
+// damping.
+TEST(Linearise, CondensedRecordIsTheWrenchAfterOneImplicitStepOfMovingBodies) {
+  Struck s;
+  expect_wrench_after_one_step(s);
+}
+
+// A bone that turns takes the forces of the nodes that it carries along.
+TEST(Linearise, CondensedRecordKnowsTheForcesThatTurnWithABone) {
+  Struck s(block_around_free_bone());
+  ASSERT_EQ(s.world->bones[0].dofs.size(), 3u * 9u);
+  s.u.tail<6>().head<3>() += Vec3(0.02, -0.01, 0.03);  // rad/s
+  VecX q = s.q;
+  s.world->system.impose(s.world->state.layout(), s.t0, q.data(), s.u.data());
+  s.back();
+  expect_wrench_after_one_step(s);
 }
 
 // The tool moves as well: one step of the coupled system is linear in the tool's final position.

@@ -99,7 +99,7 @@ TEST(ModelReduction, WhatSlidesIsNotTakenForWhatSticks) {
   scene::Description d = pressed_block(0.002);
   d.bodies[0].mesh.element_size_m = 0.004;
   d.contacts[0].friction = 0.8;
-  d.contacts[0].friction_tangent = "secant";
+  d.contacts[0].friction_tangent = FrictionTangent::kSecant;
   constexpr double kCreep = 1e-7, kSpin = 0.35;
   const auto world = touching(d, "points", 0.0, kCreep, kSpin);
   int stick = 0, slide = 0;
@@ -115,11 +115,11 @@ TEST(ModelReduction, WhatSlidesIsNotTakenForWhatSticks) {
   const Linear exact = tick_of_all_nodes(*world);
   expect_same(whole_tick(*world), exact, 1e-3);
   // for any friction tangent of the bodies' steps, the ticks' friction is the same
-  for (const char* tangent : {"full", "symmetric"}) {
+  for (const FrictionTangent tangent : {FrictionTangent::kFull, FrictionTangent::kSymmetric}) {
     d.contacts[0].friction_tangent = tangent;
     const auto other = touching(d, "points", 0.0, kCreep, kSpin);
     expect_same(whole_tick(*other), exact, 1e-3);
-    EXPECT_EQ(other->system.symmetric(), std::string(tangent) != "full") << "the pair has its own again";
+    EXPECT_EQ(other->system.symmetric(), tangent != FrictionTangent::kFull) << "the pair has its own again";
   }
 }
 
@@ -145,7 +145,7 @@ TEST(ModelReduction, FrictionElsewhereTakesNoBasis) {
   d.bodies[0].mesh.element_size_m = 0.005;
   d.bodies[0].position_m.z() = 0.0097;  // 0.3 mm deep in the floor
   d.contacts[0].friction = 0.8;
-  d.contacts[0].friction_tangent = "secant";
+  d.contacts[0].friction_tangent = FrictionTangent::kSecant;
   d.bodies[0].attachments[0].box_min_m = Vec3(-1, -1, -1);
   d.bodies[0].attachments[0].box_max_m = Vec3(-0.0199, 1, 1);
   add_floor(d, d.contacts[0]);
@@ -157,7 +157,7 @@ TEST(ModelReduction, FrictionElsewhereTakesNoBasis) {
 // Friction between two bodies, found in an image, requires no other basis either.
 TEST(ModelReduction, FrictionBetweenBodiesTakesNoBasis) {
   scene::Description d = loop::load(PALPATE_SOURCE_DIR "/scenes/press-stack.toml");
-  for (ContactSpec& contact : d.contacts) contact.friction_tangent = "secant";
+  for (ContactSpec& contact : d.contacts) contact.friction_tangent = FrictionTangent::kSecant;
   d.tool->position_m.z() -= 0.0025;  // 1 mm deep in the ball
   const auto [without, with] = bases_anew(d, 1);
   EXPECT_GT(without, 0);

@@ -1,10 +1,12 @@
 // The tick thread neither allocates nor frees memory: ticks of one tool, of a tool on an obstacle, and of two
-// tools that meet.
+// tools that meet.  Nor does the check of penetration at each period.
 #include <gtest/gtest.h>
 
 #include <deque>
 
 #include "loop/contact_record.h"
+#include "loop/penetration_warning.h"
+#include "loop/small_scenes.h"
 #include "loop/tick_group.h"
 #include "malloc_count.h"
 #include "palpate/dynamics/linearised_contact.h"
@@ -147,6 +149,26 @@ TEST(RealTime, ATickTakesNoMemory) {
   for (const char* device : {"script", "hand"})
     for (const Mode mode : {Mode::kOff, Mode::kObserve, Mode::kControl})
       EXPECT_EQ(allocations_in_ticks(device, mode), 0) << device << ", mode " << static_cast<int>(mode);
+#else
+  GTEST_SKIP() << "a sanitizer brings its own malloc";
+#endif
+}
+
+// While the tool touches the block, and no warning is due.
+TEST(PenetrationWarning, TakesNoMemoryUntilItIsDue) {
+#if PALPATE_CAN_COUNT
+  scene::Description d = small_scenes::pressed_block(0.003);
+  d.contacts[0].method = "distance";
+  const auto world = loop::assemble(d);
+  loop::PenetrationWarning warning;
+  loop::RunOptions options;
+  options.observers = {&warning};
+  ASSERT_TRUE(loop::run(*world, options).status.ok());
+  ASSERT_GT(world->contact->deepest(0), 0.0);
+  const long before = malloc_calls;
+  warning.period(*world, 1.0);
+  warning.queried(*world, 1.0);
+  EXPECT_EQ(malloc_calls - before, 0);
 #else
   GTEST_SKIP() << "a sanitizer brings its own malloc";
 #endif

@@ -15,6 +15,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 import mesh_files as m  # noqa: E402
+import vtk_files as vtk  # noqa: E402
 
 PALPATE = sys.argv.pop(1)
 DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "meshes.md"
@@ -115,39 +116,39 @@ surface("STL", "millimetres", "a.stl", m.stl_bytes(m.block().scaled(1000)), m.bl
 for version in ("3.0", "5.1"):
     for binary in (False, True):
         way = "bytes" if binary else "tetrahedra"
-        tets("VTK", way, f"t{version}{binary}.vtk", m.vtk_tets(version, binary))
-        surface("VTK", "concave polygons", f"s{version}{binary}.vtk", m.vtk_surface(PLATE, version, binary))
+        tets("VTK", way, f"t{version}{binary}.vtk", vtk.tets(version, binary))
+        surface("VTK", "concave polygons", f"s{version}{binary}.vtk", vtk.surface(PLATE, version, binary))
         for labels in ("scalars", "field"):
             tets("VTK", "regions by number", f"{labels}{version}{binary}.vtk",
-                 m.vtk_tets(version, binary, labels=labels), NUMBERS)
-    surface("VTK", "triangle strips", f"p{version}.vtk", m.vtk_surface(m.block(), version, strips=True),
+                 vtk.tets(version, binary, labels=labels), NUMBERS)
+    surface("VTK", "triangle strips", f"p{version}.vtk", vtk.surface(m.block(), version, strips=True),
             m.block())
 for binary in (False, True):
     tets("VTK", "version 5.1, indices of 32 bits", f"a{binary}.vtk",
-         m.vtk_tets("5.1", binary, "vtktypeint32"))
-    tets("VTK", "version 5.1, metadata", f"a{binary}.vtk", m.vtk_tets("5.1", binary, metadata=True))
-surface("VTK", "polygons that are not planar", "a.vtk", m.vtk_surface(warped(), "5.1"), warped(),
+         vtk.tets("5.1", binary, "vtktypeint32"))
+    tets("VTK", "version 5.1, metadata", f"a{binary}.vtk", vtk.tets("5.1", binary, metadata=True))
+surface("VTK", "polygons that are not planar", "a.vtk", vtk.surface(warped(), "5.1"), warped(),
         says="from a plane by")
-tets("VTK", "line ends of other systems", "a.vtk", m.vtk_tets().replace(b"\n", b"\r\n"))
-case("VTK", "second order", "a.vtk", m.vtk_tets(mesh=m.Tets(order=2), kind=24),
+tets("VTK", "line ends of other systems", "a.vtk", vtk.tets().replace(b"\n", b"\r\n"))
+case("VTK", "second order", "a.vtk", vtk.tets(mesh=m.Tets(order=2), kind=24),
      refused="tetrahedra of second order")
-surface("VTK", "millimetres", "a.vtk", m.vtk_surface(PLATE.scaled(1000)), PLATE, "--scale", "0.001")
+surface("VTK", "millimetres", "a.vtk", vtk.surface(PLATE.scaled(1000)), PLATE, "--scale", "0.001")
 
 # VTK's XML
-tets("VTU, VTP", "tetrahedra", "a.vtu", m.vtu(BOX))
-tets("VTU, VTP", "bytes", "a.vtu", m.vtu(BOX, form="binary"))
-tets("VTU, VTP", "bytes", "b.vtu", m.vtu(BOX, form="appended"))
-tets("VTU, VTP", "bytes", "c.vtu", m.vtu(BOX, form="appended", compressed=True))
-tets("VTU, VTP", "bytes of the other order", "a.vtu", m.vtu(BOX, form="appended", big=True))
-tets("VTU, VTP", "regions by number", "a.vtu", m.vtu(BOX, labels=True), NUMBERS)
-tets("VTU, VTP", "several pieces", "a.vtu", m.vtu(m.Tets(), labels=True, parts=2, form="binary"), NUMBERS)
-surface("VTU, VTP", "concave polygons", "a.vtp", m.vtp(PLATE))
-surface("VTU, VTP", "concave polygons", "b.vtp", m.vtp(PLATE, form="appended", compressed=True))
-surface("VTU, VTP", "polygons that are not planar", "a.vtp", m.vtp(warped()), warped(),
+tets("VTU, VTP", "tetrahedra", "a.vtu", vtk.vtu(BOX))
+tets("VTU, VTP", "bytes", "a.vtu", vtk.vtu(BOX, form="binary"))
+tets("VTU, VTP", "bytes", "b.vtu", vtk.vtu(BOX, form="appended"))
+tets("VTU, VTP", "bytes", "c.vtu", vtk.vtu(BOX, form="appended", compressed=True))
+tets("VTU, VTP", "bytes of the other order", "a.vtu", vtk.vtu(BOX, form="appended", big=True))
+tets("VTU, VTP", "regions by number", "a.vtu", vtk.vtu(BOX, labels=True), NUMBERS)
+tets("VTU, VTP", "several pieces", "a.vtu", vtk.vtu(m.Tets(), labels=True, parts=2, form="binary"), NUMBERS)
+surface("VTU, VTP", "concave polygons", "a.vtp", vtk.vtp(PLATE))
+surface("VTU, VTP", "concave polygons", "b.vtp", vtk.vtp(PLATE, form="appended", compressed=True))
+surface("VTU, VTP", "polygons that are not planar", "a.vtp", vtk.vtp(warped()), warped(),
         says="from a plane by")
-case("VTU, VTP", "second order", "a.vtu", m.vtu(m.Tets(order=2), kind=24),
+case("VTU, VTP", "second order", "a.vtu", vtk.vtu(m.Tets(order=2), kind=24),
      refused="tetrahedra of second order")
-surface("VTU, VTP", "millimetres", "a.vtp", m.vtp(PLATE.scaled(1000)), PLATE, "--scale", "0.001")
+surface("VTU, VTP", "millimetres", "a.vtp", vtk.vtp(PLATE.scaled(1000)), PLATE, "--scale", "0.001")
 
 # Gmsh
 for binary in (False, True):

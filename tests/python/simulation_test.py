@@ -331,6 +331,29 @@ class Threads(unittest.TestCase):
             self.assertEqual(one.time, 0.1)
             np.testing.assert_array_equal(one.body("ball").positions, simulations[0].body("ball").positions)
 
+    def test_images_drawn_by_one_thread_after_another(self):
+        scene = palpate.load(BALL)
+        scene.set("contact.1.method", "image")
+        alone, shared = palpate.Simulation(scene, 0.1), palpate.Simulation(scene, 0.1)
+        alone.run()
+        failures = []
+
+        def step():
+            try:
+                shared.step()
+                palpate.Simulation(scene, 0.01).run()  # dropped here, with what it drew
+            except palpate.Error as error:
+                failures.append(error)
+
+        while not shared.finished and not failures:
+            worker = threading.Thread(target=step)
+            worker.start()
+            worker.join()
+            shared.step()
+        self.assertEqual(failures, [])
+        np.testing.assert_array_equal(shared.body("ball").positions, alone.body("ball").positions)
+        self.assertGreater(abs(alone.hand().forces).max(), 0.1)
+
 
 if __name__ == "__main__":
     unittest.main(argv=[__file__])

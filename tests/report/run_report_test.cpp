@@ -6,6 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "core/missing_outputs.h"
 #include "page_charts.h"
 #include "palpate/core/error.h"
 #include "report/work_precision.h"
@@ -376,4 +377,15 @@ TEST(RunReport, NamesAFileThatIsBroken) {
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("summary.json: is not valid JSON"), std::string::npos);
   }
+}
+
+TEST(RunReport, FiguresThatAreMissingAreGroupedByReason) {
+  report::RunReport page;
+  page.page = "out/report.html";
+  page.missing_figures = {{"force", "no ffmpeg"}, {"energy", "no ffmpeg"}, {"bodies", "too large"}};
+  MissingOutputs missing;
+  report::add_missing(page, missing);
+  EXPECT_EQ(missing.outputs(),
+            (std::vector<std::string>{"2 figures in out/report.html (no ffmpeg)",
+                                      "figure \"bodies\" in out/report.html (too large)"}));
 }

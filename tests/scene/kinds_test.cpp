@@ -236,6 +236,9 @@ TEST(Kinds, SpringsOfAreaAndOfPoints) {
 TEST(Kinds, AFrictionTangentBelongsToFriction) {
   EXPECT_EQ(refusal(scene_texts::kWhole, {"contact.0.friction=0.3", "contact.0.friction_tangent=full"}),
             "accepted");
+  EXPECT_NE(refusal(scene_texts::kWhole, {"contact.0.friction=0.3", "contact.0.friction_tangent=symetric"})
+                .find("did you mean \"symmetric\""),
+            std::string::npos);
   EXPECT_EQ(refusal(scene_texts::kWhole, {"contact.0.friction_tangent=full"}),
             "--set contact.0.friction_tangent=full: contact between \"floor\" and \"ball\": friction_tangent "
             "does not apply where friction = 0; remove it, or set friction");

@@ -5,13 +5,13 @@
 
 #include "contact/grid_proxies.h"
 #include "core/counters.h"
+#include "core/missing_outputs.h"
 #include "loop/over_block.h"
 #include "loop/small_scenes.h"
 #include "palpate/core/error.h"
 #include "palpate/core/named_enum.h"
 #include "palpate/mesh/generators.h"
 #include "session/frame_folder.h"
-#include "session/missing_outputs.h"
 #include "session/movie_file.h"
 #include "session/movie_frames.h"
 #include "session/peak_contact_picture.h"
@@ -106,7 +106,7 @@ TEST_F(Pictures, ContactHasProxiesInOnePanelAndVerticesInTheOther) {
   const auto world = loop::assemble(blocks(true));
   session::PeakContactPicture peak;
   ASSERT_TRUE(run(*world, peak).status.ok());
-  session::MissingOutputs missing;
+  MissingOutputs missing;
   peak.save(*world, folder_.path().string(), missing);
   EXPECT_TRUE(missing.empty());
   const Png contact = read_png(folder_ / "contact.png");
@@ -122,7 +122,7 @@ TEST_F(Pictures, WithoutProxiesNoHullsAreDrawn) {
   const auto world = loop::assemble(blocks(false));
   session::PeakContactPicture peak;
   ASSERT_TRUE(run(*world, peak).status.ok());
-  session::MissingOutputs missing;
+  MissingOutputs missing;
   peak.save(*world, folder_.path().string(), missing);
   EXPECT_TRUE(missing.empty());
   const Png contact = read_png(folder_ / "contact.png");
@@ -169,7 +169,7 @@ TEST_F(Pictures, TheDeepestPixelsHaveTheColourOfTheMaximum) {
   const auto world = loop::assemble(d);
   session::PeakContactPicture peak;
   ASSERT_TRUE(run(*world, peak).status.ok());
-  session::MissingOutputs missing;
+  MissingOutputs missing;
   peak.save(*world, folder_.path().string(), missing);
   const Png depth = read_png(folder_ / "depth.png");
   // 23 mm x 29 mm of the blocks' faces overlap
@@ -182,7 +182,7 @@ TEST_F(Pictures, NothingThatTouchesIsSaidToBeMissing) {
   const auto world = loop::assemble(d);
   session::PeakContactPicture peak;
   ASSERT_TRUE(run(*world, peak).status.ok());
-  session::MissingOutputs missing;
+  MissingOutputs missing;
   peak.save(*world, folder_.path().string(), missing);
   EXPECT_FALSE(missing.empty());
   EXPECT_FALSE(std::filesystem::exists(folder_ / "contact.png"));
@@ -200,7 +200,7 @@ TEST_F(Pictures, FramesShareCameraAndColours) {
                               d.duration_s);
   ASSERT_TRUE(run(*world, frames).status.ok());
   EXPECT_EQ(frames.count(), 5);
-  session::MissingOutputs missing;
+  MissingOutputs missing;
   const long before = counters::counter("render.picture");
   const auto sink = session::make_frame_folder((folder_ / "frames").string());
   frames.save(*world, {sink.get()}, {}, missing);
@@ -266,7 +266,7 @@ TEST_F(Pictures, FramesKeepTheirTimeWhereBodiesStandStill) {
                               {240, 218});
   for (const double t : {0.0, 0.01, 0.02, 0.09, 0.10, 0.2}) frames.period(*world, t);
   EXPECT_EQ(frames.count(), 10);  // states at 0, 20, 90 (for 80) and 100 ms; the end of the run adds none
-  session::MissingOutputs missing;
+  MissingOutputs missing;
   const long before = counters::counter("render.picture");
   const auto sink = session::make_frame_folder((folder_ / "frames").string());
   frames.save(*world, {sink.get()}, {}, missing);
@@ -322,7 +322,7 @@ TEST_F(Pictures, AStopEndsDrawingAndTheMovieIsComplete) {
   session::Callbacks callbacks;
   callbacks.progress = [&stop](double share) { stop = share > 0.4; };
   callbacks.stop = &stop;
-  session::MissingOutputs missing;
+  MissingOutputs missing;
   const auto movie = session::make_movie((folder_ / "all.png").string(), 0.01);
   frames.save(*world, {movie.get()}, callbacks, missing);
   EXPECT_EQ(movie->written(), 2);
@@ -335,7 +335,7 @@ TEST_F(Pictures, AFrameThatCannotBeWrittenIsNamed) {
   session::MovieFrames frames(*world, folder_.path().string(), session::Shade::kDisplacement, 0.01, 0.04,
                               {240, 218});
   ASSERT_TRUE(run(*world, frames).status.ok());
-  session::MissingOutputs missing;
+  MissingOutputs missing;
   std::filesystem::create_directories(folder_ / "frames/0002.part");  // blocks the temporary file
   const auto folder = session::make_frame_folder((folder_ / "frames").string());
   const auto movie = session::make_movie((folder_ / "all.png").string(), 0.01);

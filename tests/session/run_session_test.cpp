@@ -64,7 +64,7 @@ class RunSession : public testing::Test {
   TemporaryFolder folder_;
 };
 
-scene::Description load_again(const session::SceneArguments& scene) {
+scene::Description load_again(const scene::SceneArguments& scene) {
   return loop::load(scene.scene, scene.changes());
 }
 

@@ -122,7 +122,7 @@ int stability(const StabilityArguments& arguments) {
     return kExitStopped;
   }
   MissingOutputs missing;
-  missing.add(written);
+  report::add_missing(written, missing);
   tasks.add_missing(matrix.outcome, missing);
   return missing.close(unexpected > 0 ? kExitError : 0);
 }

@@ -144,7 +144,7 @@ void write_results(const Run& run, const std::string& folder, MissingOutputs& mi
   store::write_atomically(path, Json{{"cases", run.cases}}.dump(2) + "\n");
   const report::RunReport written = report::write_run_report(folder);
   fmt::print("written: {}, {}\n", path, written.page.string());
-  missing.add(written);
+  report::add_missing(written, missing);
 }
 
 TaskFolder::Use use_of(const ValidateArguments& arguments) {
@@ -210,6 +210,11 @@ int validate(const ValidateArguments& arguments) {
   fmt::print("{} of {} {}{}\n", done - static_cast<std::size_t>(out.failed), done,
              arguments.inject_faults ? "faults make their cases fail" : "cases meet their acceptance limits",
              done < runs.size() ? fmt::format("; stopped before the other {}", runs.size() - done) : "");
+  if (outcome.stopped) {
+    fmt::print(stderr, "palpate: stopped{}\n",
+               tasks.folder().empty() ? "" : "; the same command resumes from " + tasks.folder());
+    return kExitStopped;
+  }
   return missing.close(out.failed > 0 ? kExitError : 0);
 }
 

@@ -66,14 +66,14 @@ double largest_change(const std::vector<Vec3>& symmetric, const std::vector<Vec3
 }
 
 FrictionPrice friction_price(scene::Description d, const std::atomic<bool>* stop) {
-  const auto run = [&](const char* tangent) {
+  const auto run = [&](FrictionTangent tangent) {
     for (ContactSpec& contact : d.contacts) {
       contact.friction = kFriction;
       contact.friction_tangent = tangent;
     }
     return bench_contact(d, {}, stop);
   };
-  const ContactBenchRow symmetric = run("secant"), full = run("full");
+  const ContactBenchRow symmetric = run(FrictionTangent::kSecant), full = run(FrictionTangent::kFull);
   FrictionPrice out{.symmetric_ms = symmetric.step.median, .full_ms = full.step.median};
   if (symmetric.friction_n > 0.0) out.left_out = symmetric.left_out_n / symmetric.friction_n;
   out.force_change = largest_change(symmetric.forces, full.forces);

@@ -103,6 +103,9 @@ class ContactForce : public dynamics::ForceTerm,
   /// Returns the report of each pair, in the order of add_pair(). Its pointers are valid as long as this
   /// object.
   std::vector<PairReport> pairs() const;
+  std::size_t pair_count() const;
+  /// PairReport::deepest of one pair.
+  double deepest(std::size_t pair) const;
   /// Makes every source keep the data that pictures need, from the next query on.
   void keep_views();
   /// Returns all samples of the last query that have an area, candidates included, evaluated at the given

@@ -1,5 +1,7 @@
 #pragma once
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "palpate/core/keys.h"
@@ -13,6 +15,17 @@ struct ObstacleSpec {
   /// All other keys, e.g. `shape["radius_m"] = 0.1`; absent keys have the registry's defaults.
   Settings shape = {};
 };
+
+/// Tangent of friction.
+enum class FrictionTangent {
+  kAuto,       ///< kSecant where a step is one linear solve, else kFull.
+  kFull,       ///< All derivatives.
+  kSecant,     ///< Like kSymmetric, with the friction of the step's end, found by repeated solves.
+  kSymmetric,  ///< Without the derivative of friction with respect to pressure, which is unsymmetric.
+};
+constexpr std::array<std::string_view, 4> option_names(FrictionTangent) {
+  return {"auto", "full", "secant", "symmetric"};
+}
 
 /// Pair of bodies that may touch. Corresponds to a `[[contact]]` table of a scene.
 struct ContactSpec {
@@ -43,10 +56,7 @@ struct ContactSpec {
   /// tau: damping of these springs divided by their stiffness [s]; in a scene the time between two queries.
   /// 0: no springs.
   double friction_retardation_s = 0.0;
-  /// "full"; "symmetric": without the derivative of friction with respect to pressure, which is unsymmetric;
-  /// "secant": like "symmetric", with the friction of the step's end, found by repeated solves; "auto":
-  /// "secant" where a step is one linear solve.
-  std::string friction_tangent = "auto";
+  FrictionTangent friction_tangent = FrictionTangent::kAuto;
   /// Samples with a smaller positive gap are kept as candidates [m]; 0: chosen from the mesh.
   double candidate_gap_m = 0.0;
   int pixels = 64;  ///< Image space: pixels along the longer edge of the image.

@@ -52,7 +52,7 @@ class ComparisonTasks : public experiments::Experiment {
   /// of its repeats.
   bool is_ready(std::size_t i) override;
   /// Returns false for a chart with missing parts: the cause (a library, a display) may be resolved later, so
-  /// the chart is made again.
+  /// the chart is made again.  True for one that ran out of time, which is made again under a larger limit.
   bool is_final(std::size_t i, const experiments::Result& result) override;
   bool has_dependencies() const override { return true; }
   std::size_t group(std::size_t i) override { return tasks_[i].group; }

@@ -72,9 +72,10 @@ void ComparisonTasks::take_chart(const Task& task, const experiments::Result& re
   const auto note = [&](const std::string& of, const std::string& why) {
     comparison.missing_charts.push_back({of, why});
   };
-  if (result.status != Status::kOk) {
+  if (result.status != Status::kOk)
     note(exchange ? "the exchange period" : "the contact methods", result.reason);
-  } else if (exchange) {
+  if (result.bytes.empty()) return;
+  if (exchange) {
     comparison.exchange = restored<ExchangeStudy>(result.bytes);
     if (!comparison.exchange.trouble.empty())
       note("the error of the exchange period", comparison.exchange.trouble);
@@ -91,7 +92,7 @@ void ComparisonTasks::take_chart(const Task& task, const experiments::Result& re
 
 bool ComparisonTasks::is_final(std::size_t i, const experiments::Result& result) {
   const Task& task = tasks_[i];
-  if (task.is_reference() || task.is_point()) return true;
+  if (task.is_reference() || task.is_point() || result.status == Status::kOutOfTime) return true;
   if (result.status != Status::kOk) return false;
   const auto good = [](const auto& point) { return point.trouble.empty(); };
   if (task.kind == Task::Kind::kExchange) {

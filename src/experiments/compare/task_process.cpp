@@ -47,18 +47,37 @@ experiments::Result result_of(const Run& run, const Job& job) {
   return out;
 }
 
+/// Returns the result of a chart with `made` of `planned` points, which the limit may have cut off.
+template <class Chart>
+experiments::Result chart_of(Chart chart, std::size_t made, std::size_t planned, const Job& job) {
+  experiments::Result out;
+  if (made < planned) {
+    out.status = Status::kOutOfTime;
+    out.reason = fmt::format("out of time: {:g} s (after {} of {} points)", job.limit_s, made, planned);
+  }
+  out.bytes = archived(std::move(chart));
+  return out;
+}
+
 experiments::Result run_kind(const Job& job, const std::atomic<bool>& out_of_time) {
   const scene::Description d = loop::parse(job.source, job.path);
-  experiments::Result out;
   switch (job.kind) {
     case WorkKind::kReference: return result_of(run_once(d, d.compare.duration_s, &out_of_time), job);
     case WorkKind::kHaptic: return result_of(run_for_wrenches(d, d.compare.duration_s, &out_of_time), job);
-    case WorkKind::kExchange: out.bytes = archived(compare_exchange(d, {{}, &out_of_time})); break;
-    case WorkKind::kMethods: out.bytes = archived(Methods{compare_contact_methods(d, &out_of_time)}); break;
-    case WorkKind::kPoint:
-      return run_point(d, job.limit_s, job.has_reference ? &job.reference : nullptr, &out_of_time);
+    case WorkKind::kExchange: {
+      ExchangeStudy study = compare_exchange(d, {{}, &out_of_time});
+      const std::size_t made = study.points.size(),
+                        planned = exchange_runs(d) > 0 ? d.compare.exchange_periods_s.size() : 0;
+      return chart_of(std::move(study), made, planned, job);
+    }
+    case WorkKind::kMethods: {
+      Methods methods{compare_contact_methods(d, &out_of_time)};
+      const std::size_t made = methods.points.size(), planned = d.compare.contact_methods.size();
+      return chart_of(std::move(methods), made, planned, job);
+    }
+    case WorkKind::kPoint: break;
   }
-  return out;
+  return run_point(d, job.limit_s, job.has_reference ? &job.reference : nullptr, &out_of_time);
 }
 
 }  // namespace

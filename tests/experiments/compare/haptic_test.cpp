@@ -32,40 +32,9 @@ HapticComparison compare_here(const scene::Description& description, const compa
 
 /// A round tool presses a block of 160 tetrahedra while the handle moves down and turns, which gives force
 /// and torque. The coupling has w = sqrt(k/m) = 77/s: a period of 2 ms is 0.15 rad of its phase.
-constexpr const char* kPress = R"([scene]
-name = "press block"
-duration_s = 0.04
-[[body]]
-name = "block"
-position_m = [0.0, 0.0, 0.01]
-youngs_modulus_pa = 1e4
-stiffness_damping_s = 2e-3
-[body.mesh]
-generator = "box"
-size_m = [0.04, 0.04, 0.02]
-element_size_m = 0.01
-[[body.attachment]]
-box_min_m = [-1.0, -1.0, -1e-6]
-box_max_m = [1.0, 1.0, 1e-6]
-[[contact]]
-between = ["block", "tool"]
-stiffness_pa_m = 1e7
-[tool]
-radius_m = 0.015
-mass_kg = 0.05
-position_m = [0.001, 0.002, 0.035]
-tick_s = 2e-4
-[tool.coupling]
-stiffness_n_m = 300.0
-damping_n_s_m = 4.0
-rotational_stiffness_n_m_rad = 0.02
-rotational_damping_n_m_s_rad = 3e-4
-[device]
-type = "script"
-[[device.keyframe]]
-time_s = 0.0
-position_m = [0.001, 0.002, 0.035]
-[[device.keyframe]]
+const std::string kPress = compare_scenes::touch_text(
+    "0.035", "tick_s = 2e-4\n", "rotational_stiffness_n_m_rad = 0.02\nrotational_damping_n_m_s_rad = 3e-4\n",
+    R"([[device.keyframe]]
 time_s = 0.08
 position_m = [0.001, 0.002, 0.031]
 rotation_vector_rad = [0.1, 0.2, 0.3]
@@ -74,7 +43,7 @@ exchange_period_s = 2e-3
 [integrator]
 name = "cvode-bdf"
 rtol = 1e-3
-)";
+)");
 constexpr const char* kVaried = R"([compare.haptic]
 reference_rtol = 1e-7
 reference_refresh_s = 2.5e-4
@@ -84,7 +53,7 @@ integrators = ["linearly-implicit-euler"]
 )";
 
 scene::Description press(const std::vector<std::string>& overrides = {}) {
-  return loop::parse(std::string(kPress) + kVaried, "press.toml", overrides);
+  return loop::parse(kPress + kVaried, "press.toml", overrides);
 }
 
 compare::CompareOptions once() {

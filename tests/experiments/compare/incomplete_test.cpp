@@ -169,4 +169,37 @@ TEST(Compare, MoreTimeTriesAgain) {
   EXPECT_EQ(compare::run({d}, options).scenes[0].points[0].status, Status::kOk);
 }
 
+#ifdef PALPATE_HAS_TOOL
+// A chart that a limit cut off is no chart of fewer points.  It is made again under a larger limit.
+TEST(Compare, AChartThatRanOutOfTimeIsMadeAgainWithMoreTime) {
+  const TemporaryFolder folder;
+  compare::CompareOptions options = quick();
+  options.integrators = {"linearly-implicit-euler"};
+  options.folder = folder.string();
+  options.reference_limit_s = 1e-6;  // shorter than any run
+  const auto d = loop::parse(compare_scenes::touch_text("0.034", "", "", R"([exchange]
+exchange_period_s = 0.01
+[compare]
+duration_s = 0.01
+exchange_periods_s = [0.01, 0.005]
+contact_methods = ["analytic", "distance"]
+[[compare.ladder]]
+integrator = "linearly-implicit-euler"
+step_s = [0.01]
+)"),
+                             "touch.toml");
+  const compare::SceneComparison cut = compare::run({d}, options).scenes[0];
+  ASSERT_EQ(cut.missing_charts.size(), 2u);
+  EXPECT_EQ(cut.missing_charts[0].of, "the contact methods");
+  EXPECT_EQ(cut.missing_charts[0].why, "out of time: 1e-06 s (after 0 of 2 points)");
+  EXPECT_EQ(cut.missing_charts[1].of, "the exchange period");
+  EXPECT_EQ(compare::run({d}, options).scenes[0].missing_charts.size(), 2u) << "it is not tried in vain";
+  options.reference_limit_s = 300.0;
+  const compare::SceneComparison whole = compare::run({d}, options).scenes[0];
+  for (const compare::MissingChart& chart : whole.missing_charts) ADD_FAILURE() << chart.text();
+  EXPECT_EQ(whole.methods.size(), 2u);
+  EXPECT_EQ(whole.exchange.points.size(), 2u);
+}
+#endif
+
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "experiments/compare/scenes.h"
 #include "experiments/study/block.h"
 #include "palpate/loop/load.h"
 #include "palpate/loop/run.h"
@@ -78,29 +79,13 @@ TEST(StudyFigures, AreThoseOfTheRun) {
 
 #ifdef PALPATE_HAS_TOOL
 TEST(StudyFigures, OfAHandAreItsLargestForceAndWhen) {
-  const auto d = loop::parse(R"([scene]
-name = "tool alone"
-duration_s = 0.04
-[tool]
-radius_m = 0.01
-mass_kg = 0.05
-position_m = [0.0, 0.0, 0.05]
-[tool.coupling]
-stiffness_n_m = 300.0
-damping_n_s_m = 1.0
-[device]
-type = "script"
-[[device.keyframe]]
-time_s = 0.0
-position_m = [0.0, 0.0, 0.05]
-[[device.keyframe]]
+  const auto d = compare_scenes::tool_alone(R"([[device.keyframe]]
 time_s = 0.01
 position_m = [0.004, 0.0, 0.05]
 [[device.keyframe]]
 time_s = 0.02
 position_m = [0.0, 0.0, 0.05]
-)",
-                             "x.toml");
+)");
   const auto world = loop::assemble(d);
   Witness witness;
   loop::RunOptions options;

@@ -1,6 +1,6 @@
-#include "session/options.h"
+#include "scene/scene_arguments.h"
 
-namespace palpate::session {
+namespace palpate::scene {
 
 std::vector<std::string> SceneArguments::changes() const {
   std::vector<std::string> out = overrides;
@@ -8,4 +8,4 @@ std::vector<std::string> SceneArguments::changes() const {
   return out;
 }
 
-}  // namespace palpate::session
+}  // namespace palpate::scene

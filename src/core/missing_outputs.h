@@ -2,17 +2,13 @@
 #include <string>
 #include <vector>
 
-#include "report/run_report.h"
-
-namespace palpate::session {
+namespace palpate {
 
 /// Outputs that were requested and could not be delivered, while everything else succeeded.
 class MissingOutputs {
  public:
-  /// Adds a missing output `what` and the reason `why`.
+  /// Adds a missing output `what` and the reason `why`, of which the first line counts.
   void add(const std::string& what, const std::string& why);
-  /// Adds the figures that are missing from a page.
-  void add(const report::RunReport& report);
   /// Adds the outputs that are missing from a part of the work.
   void add(const MissingOutputs& more);
   bool empty() const { return outputs_.empty(); }
@@ -23,4 +19,4 @@ class MissingOutputs {
   std::vector<std::string> outputs_;
 };
 
-}  // namespace palpate::session
+}  // namespace palpate
