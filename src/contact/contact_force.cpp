@@ -25,14 +25,15 @@ void ContactForce::Impl::place_frames(const dynamics::StateView& state) {
 }
 
 // Force, tangent and events of one state are requested one after another; the shape is evaluated once for
-// all. It depends on positions and poses only: an implicit step evaluates the state of the query at another
-// time.
+// all. Equal times do not imply equal poses of a moving frame, because its known trajectory may have been
+// extended.
 void ContactForce::Impl::follow(const dynamics::StateView& state) {
   if (!has_followers()) return;
   // A failed trial of an integrator: the resulting force is not finite either.
   if (!state.q.allFinite()) return;
-  bool same = followed.query == statistics.queries && followed.q.size() == state.q.size() &&
-              followed.q == state.q && followed.poses.size() == frames.size();
+  bool same = followed.query == statistics.queries && followed.time == state.time &&
+              followed.q.size() == state.q.size() && followed.q == state.q &&
+              followed.poses.size() == frames.size();
   for (std::size_t i = 0; same && i < frames.size(); ++i)
     same = followed.poses[i].translation == frame_states[i].pose.translation &&
            followed.poses[i].rotation.coeffs() == frame_states[i].pose.rotation.coeffs();
@@ -54,6 +55,7 @@ bool ContactForce::Impl::has_followers() const {
 
 void ContactForce::Impl::note_followed(const dynamics::StateView& state) {
   followed.query = statistics.queries;
+  followed.time = state.time;
   followed.q = state.q;
   followed.poses.clear();
   for (const auto& frame : frames) followed.poses.push_back(frame->pose(state));

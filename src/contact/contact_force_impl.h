@@ -95,6 +95,7 @@ struct ContactForce::Impl {
   /// Inputs of the samples that follow, as of their last evaluation.
   struct Followed {
     long query = -1;
+    double time = 0.0;
     VecX q;
     std::vector<Pose> poses;
   } followed;
