@@ -19,6 +19,9 @@ std::unique_ptr<dynamics::Stepper> make_kinsol_static(dynamics::System&, dynamic
 std::unique_ptr<dynamics::Stepper> make_linearly_implicit_euler(dynamics::System&, dynamics::State&,
                                                                 const IntegratorSpec&,
                                                                 std::unique_ptr<dynamics::LinearSolver>);
+std::unique_ptr<dynamics::Stepper> make_linearly_implicit_bdf2(dynamics::System&, dynamics::State&,
+                                                               const IntegratorSpec&,
+                                                               std::unique_ptr<dynamics::LinearSolver>);
 std::unique_ptr<dynamics::Stepper> make_backward_euler(dynamics::System&, dynamics::State&,
                                                        const IntegratorSpec&,
                                                        std::unique_ptr<dynamics::LinearSolver>);

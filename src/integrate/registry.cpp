@@ -107,6 +107,12 @@ dynamics::StepperRegistry methods_by_hand() {
        {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto", true},
        make_linearly_implicit_euler,
        with(kFixed, kImplicit)},
+      {"linearly-implicit-bdf2",
+       "backward differences of order 2, linearized: one linear solve per step, as accurate as bdf2 where "
+       "forces are smooth",
+       {"BDF", 2, 2, StepControl::kFixed, Stability::kL, true, true, "force, tangent", "auto", true},
+       make_linearly_implicit_bdf2,
+       with(kFixed, kImplicit)},
       {"backward-euler",
        "backward Euler, Newton iterated to convergence: full Newton, or a factor reused over "
        "factor_kept_steps steps",

@@ -10,6 +10,7 @@ namespace hand_steppers {
 using namespace palpate;
 
 inline const std::vector<std::string> kHand = {"linearly-implicit-euler",
+                                               "linearly-implicit-bdf2",
                                                "backward-euler",
                                                "implicit-midpoint",
                                                "bdf2",
