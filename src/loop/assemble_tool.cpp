@@ -82,16 +82,19 @@ MonolithicTool assemble_block(World& world, const scene::Hand& hand, const devic
   q << r.w(), r.vec(), spec.position_m;
   const dynamics::BlockSpec tool_spec = tool::tool_block(spec);
   MonolithicTool out{.block_id = world.state.insert(tool_spec, q, VecX::Zero(6))};
-  const tool::SimbodyTerms terms =
-      tool::make_simbody_terms(out.block_id, spec, world.description.gravity_m_s2);
-  world.system.add(terms.inertia);
-  world.system.add(terms.force);
   if (world.description.exchange.scheme == scene::ExchangeScheme::kSingleRate) {
+    const tool::RigidTerms terms = tool::make_rigid_terms(out.block_id, spec, world.description.gravity_m_s2);
+    world.system.add(terms.inertia);
+    for (const auto& force : terms.forces) world.system.add(force);
     out.sampled = std::make_shared<SampledHandle>();
     world.system.add(tool::make_coupling_term(out.block_id, spec,
                                               [handle = out.sampled](double t) { return handle->at(t); }));
     return out;
   }
+  const tool::SimbodyTerms terms =
+      tool::make_simbody_terms(out.block_id, spec, world.description.gravity_m_s2);
+  world.system.add(terms.inertia);
+  world.system.add(terms.force);
   if (own_device && hand.device->type == "hand")
     out.hand = assemble_hand(world, hand, out.block_id, tool_spec);
   else

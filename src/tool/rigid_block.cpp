@@ -1,6 +1,7 @@
 #include "tool/rigid_block.h"
 
 #include "coupling.h"
+#include "parameters.h"
 
 namespace palpate::tool {
 namespace {
@@ -46,6 +47,15 @@ Wrench coupling_on_hand(const ToolSpec& spec, const HandleState& tool, const Han
       wrench_of(coupling_wrench(coupling_gains(spec), {tool.pose, tool.twist}, {handle.pose, handle.twist}));
   return {-on_tool.moment, -on_tool.force};
 }
+
+RigidTerms make_rigid_terms(int block_id, const ToolSpec& spec, const Vec3& gravity) {
+  const RigidParameters p = rigid_parameters(spec, gravity);
+  RigidTerms out{make_rigid_inertia(block_id, p.mass, p.inertia),
+                 {make_gyroscopic(block_id, p.inertia, true)}};
+  if (!p.gravity.isZero()) out.forces.push_back(make_rigid_weight(block_id, p.mass, p.gravity));
+  return out;
+}
+
 std::shared_ptr<dynamics::ForceTerm> make_coupling_term(int block_id, const ToolSpec& spec, HandlePath handle,
                                                         bool symmetric) {
   return std::make_shared<CouplingTerm>(block_id, coupling_gains(spec), std::move(handle), symmetric);

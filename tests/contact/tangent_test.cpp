@@ -348,7 +348,7 @@ TEST(ContactEnergy, DissipationClosesThePowerBalance) {
 // frames as a border; its force is the term's less the tangent times the shift.
 TEST(ContactTangent, TheStepHasTheBorderOfTheMatrix) {
   for (const Law& law : kLaws) {
-    Scene scene(law, true, "symmetric");
+    Scene scene(law, true, FrictionTangent::kSymmetric);
     ASSERT_TRUE(scene.term.is_point_stiffness());
     const dynamics::StateView at = scene.world.state.view();
     const int size = at.layout->u_size, nodal = at.layout->nodal_size;

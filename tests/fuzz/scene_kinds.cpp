@@ -1,5 +1,6 @@
 #include "fuzz/scene_kinds.h"
 
+#include "palpate/core/named_enum.h"
 #include "palpate/device/device.h"
 #include "palpate/device/motions.h"
 #include "palpate/device/profile.h"
@@ -95,7 +96,8 @@ scene::Kinds make() {
                                             "contact_refresh_s", "latency_ticks"})},
                  {"monolithic", part_keys({"exchange_period_s", "contact_refresh_s"})},
                  {"single_rate", part_keys({"exchange_period_s", "contact_refresh_s"})}},
-       .default_kind = [](const Description&) { return scene::CosimulationSpec{}.scheme; }},
+       .default_kind =
+           [](const Description&) { return std::string(name_of(scene::CosimulationSpec{}.scheme)); }},
       mesh_kinds("body.mesh", kinds_of(mesh::tet_generators()))};
   for (const char* table : {"tool.mesh", "hand.tool.mesh"})
     out.push_back(mesh_kinds(table, kinds_of(mesh::surface_generators())));

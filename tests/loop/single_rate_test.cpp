@@ -61,6 +61,7 @@ TEST(SingleRate, ExchangesNothing) {
   EXPECT_EQ(ticks.size(), 100u);
   EXPECT_EQ(counters::counter("loop.exchange_record"), 0);
   EXPECT_EQ(counters::counter("loop.condenser"), 0);
+  EXPECT_EQ(counters::counter("integrate.linearly-implicit-euler"), 1);
   counters::reset();
   ticks_of(press(Scheme::kPartitioned));
   EXPECT_GT(counters::counter("loop.exchange_record"), 0) << "the counters count";

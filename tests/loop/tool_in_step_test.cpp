@@ -15,7 +15,7 @@ using tool_in_step::pressed;
 
 namespace {
 
-scene::Description with_friction(const char* tangent) {
+scene::Description with_friction(FrictionTangent tangent) {
   scene::Description d = pressed();
   d.contacts[0].friction = 0.4;
   d.contacts[0].friction_tangent = tangent;
@@ -79,12 +79,13 @@ struct Case {
 };
 
 const std::vector<Case>& cases() {
-  static const std::vector<Case> all{{"beside the centre", [] { return pressed(); }},
-                                     {"symmetric friction", [] { return with_friction("symmetric"); }},
-                                     {"friction of the step's end", [] { return with_friction("secant"); }},
-                                     {"two tools", pressed_by_two},
-                                     {"a hand in the State", pressed_by_a_hand},
-                                     {"a moving attachment", pressed_while_it_moves}};
+  static const std::vector<Case> all{
+      {"beside the centre", [] { return pressed(); }},
+      {"symmetric friction", [] { return with_friction(FrictionTangent::kSymmetric); }},
+      {"friction of the step's end", [] { return with_friction(FrictionTangent::kSecant); }},
+      {"two tools", pressed_by_two},
+      {"a hand in the State", pressed_by_a_hand},
+      {"a moving attachment", pressed_while_it_moves}};
   return all;
 }
 
