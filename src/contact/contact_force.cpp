@@ -27,18 +27,29 @@ void ContactForce::Impl::place_frames(const dynamics::StateView& state) {
 // Force, tangent and events of one state are requested one after another; the shape is evaluated once for
 // all. Equal times do not imply equal poses of a moving frame, because its known trajectory may have been
 // extended.
+//
+// The end of one step is the start of the next, whose forces are evaluated at the time of its own end:
+// positions and poses are the same, and so are samples that follow, since gaps depend on these alone. This
+// does not hold for friction springs, which move with time, and for samples of a query, which are not yet
+// nearest points to rounding.
+bool ContactForce::Impl::is_followed(const dynamics::StateView& state) const {
+  const bool any_time = !followed.by_query && std::none_of(pairs.begin(), pairs.end(),
+                                                           [](const Pair& p) { return p.anchors.on(); });
+  if (followed.query != statistics.queries || (!any_time && followed.time != state.time)) return false;
+  if (followed.q.size() != state.q.size() || followed.q != state.q || followed.poses.size() != frames.size())
+    return false;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (followed.poses[i].translation != frame_states[i].pose.translation ||
+        followed.poses[i].rotation.coeffs() != frame_states[i].pose.rotation.coeffs())
+      return false;
+  return true;
+}
+
 void ContactForce::Impl::follow(const dynamics::StateView& state) {
   if (!has_followers()) return;
   // A failed trial of an integrator: the resulting force is not finite either.
-  if (!state.q.allFinite()) return;
-  bool same = followed.query == statistics.queries && followed.time == state.time &&
-              followed.q.size() == state.q.size() && followed.q == state.q &&
-              followed.poses.size() == frames.size();
-  for (std::size_t i = 0; same && i < frames.size(); ++i)
-    same = followed.poses[i].translation == frame_states[i].pose.translation &&
-           followed.poses[i].rotation.coeffs() == frame_states[i].pose.rotation.coeffs();
-  if (same) return;
-  note_followed(state);
+  if (!state.q.allFinite() || is_followed(state)) return;
+  note_followed(state, false);
   for (const Pair& pair : pairs) {
     if (!pair.follows) continue;
     const auto own = std::span(samples).subspan(pair.begin, pair.end - pair.begin);
@@ -53,7 +64,8 @@ bool ContactForce::Impl::has_followers() const {
   return std::any_of(pairs.begin(), pairs.end(), [](const Pair& pair) { return pair.follows; });
 }
 
-void ContactForce::Impl::note_followed(const dynamics::StateView& state) {
+void ContactForce::Impl::note_followed(const dynamics::StateView& state, bool by_query) {
+  followed.by_query = by_query;
   followed.query = statistics.queries;
   followed.time = state.time;
   followed.q = state.q;

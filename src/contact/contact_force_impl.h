@@ -91,10 +91,12 @@ struct ContactForce::Impl {
   void place_frames_alone(const dynamics::StateView& state);
   void follow(const dynamics::StateView& state);
   bool has_followers() const;  ///< Returns whether the samples of any pair follow the state.
-  void note_followed(const dynamics::StateView& state);
+  void note_followed(const dynamics::StateView& state, bool by_query);
+  bool is_followed(const dynamics::StateView& state) const;
   /// Inputs of the samples that follow, as of their last evaluation.
   struct Followed {
     long query = -1;
+    bool by_query = false;  ///< The samples are those of the query.
     double time = 0.0;
     VecX q;
     std::vector<Pose> poses;

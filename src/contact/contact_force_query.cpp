@@ -59,7 +59,7 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
   ++statistics.queries;
   counters::count("contact.query");
   std::swap(samples, next_samples);
-  if (has_followers()) note_followed(state);  // The samples are up to date for this state.
+  if (has_followers()) note_followed(state, true);  // The samples are up to date for this state.
   find_given();
   // The version was not requested between two queries: no comparison is needed.
   if (events_to_compare) ++events_version;
