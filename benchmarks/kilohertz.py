@@ -1,0 +1,199 @@
+#!/usr/bin/env python3
+"""Measures the single-rate scheme beside the partitioned one: the tables and the chart of docs/kilohertz.md.
+
+    benchmarks/kilohertz.py PROGRAM [error] [steps] [scale] [clock] [hand] [-o FOLDER]
+
+error   error of the force on the hand against the monolithic solution, and CPU time, by scheme
+steps   time of one step by its parts, beside an exchange in every tick
+scale   time of one step against the number of tetrahedra, and its growth
+clock   runs in real time: lateness, work, skipped ticks
+hand    a simulated hand that holds the device: force above 30 Hz, by stiffness of the coupling
+
+Without a name all are measured. Results are printed as tables in Markdown; FOLDER receives runs and chart.
+"""
+import argparse
+import json
+import math
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+SINGLE = ["exchange.scheme=single_rate", "integrator.linear_rtol=1e-2"]
+BDF2 = [*SINGLE, "integrator.name=linearly-implicit-bdf2"]
+EACH_TICK = ["exchange.exchange_period_s=0.001", "exchange.contact_refresh_s=0.001", "integrator.linear_rtol=1e-2"]
+STIFF = ["body.0.youngs_modulus_pa=2e5", "tool.coupling.stiffness_n_m=1500", "tool.coupling.damping_n_s_m=9"]
+REFERENCE = ["compare.haptic.reference_step_s=2.5e-4", "compare.haptic.reference_refresh_s=5e-4"]
+SCHEMES = {
+    "partitioned, points, 10 ms": [],
+    "partitioned, condensed, 10 ms": ["exchange.linearisation=condensed"],
+    "partitioned, frozen, 10 ms": ["exchange.linearisation=frozen"],
+    "partitioned, points, 2 ms": ["exchange.exchange_period_s=0.002", "exchange.contact_refresh_s=0.002"],
+    "partitioned, frozen, 1 ms": [*EACH_TICK, "exchange.linearisation=frozen"],
+    "single rate, Euler": SINGLE,
+    "single rate, BDF2": BDF2,
+    "single rate, BDF2, ticks of 2 ms": [*BDF2, "tool.tick_s=0.002"],
+}
+
+
+class Bench:
+    def __init__(self, program, folder):
+        self.program, self.folder, self.count = program, folder, 0
+
+    def run(self, scene, changes, *options):
+        """Returns the figures of a run."""
+        self.count += 1
+        out = self.folder / f"run-{self.count}"
+        command = [self.program, "run", scene, "-o", str(out), *options]
+        for change in changes:
+            command += ["--set", change]
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode != 0:
+            sys.exit(f"{' '.join(command)}\n{done.stderr}")
+        return json.loads((out / "summary.json").read_text())["figures"]
+
+    def best(self, scene, changes, *options, repeats=3):
+        """Returns the figures of the run with the least loop time."""
+        return min((self.run(scene, changes, *options) for _ in range(repeats)),
+                   key=lambda figures: figures["timings"]["loop_wall_s"])
+
+
+def table(head, rows):
+    print("| " + " | ".join(head) + " |")
+    print("|" + "---|" * len(head))
+    for row in rows:
+        print("| " + " | ".join(row) + " |")
+    print(flush=True)
+
+
+def percent(value):
+    return "none" if value is None else f"{100 * value:.2g} %"
+
+
+def error(bench):
+    """Prints the error table and draws error against CPU time."""
+    points = {}
+    for name, scene, changes in [("touch-human", "touch-human", []), ("touch-head", "touch-head", []),
+                                 ("touch-head, E x 10, coupling x 5", "touch-head", STIFF),
+                                 ("twist-ball", "twist-ball", [])]:
+        rows = []
+        for scheme, own in SCHEMES.items():
+            figures = bench.run(scene, [*changes, *own, *REFERENCE], "--against-monolithic")
+            (felt,) = figures["against_monolithic"]
+            cpu = figures["timings"]["loop_cpu_s"] / figures["timings"]["simulated_s"]
+            has_torque = felt["reference_peak_torque_n_m"] > 1e-9
+            rows.append([scheme, percent(felt["force_error_rms_of_peak"]),
+                         percent(felt["force_error_max_n"] / felt["reference_peak_force_n"]),
+                         percent(felt["torque_error_rms_of_peak"]) if has_torque else "no torque", f"{cpu:.2f}"])
+            points.setdefault(name, []).append((scheme, cpu, felt["force_error_rms_of_peak"]))
+        print(f"{name}\n")
+        table(["scheme", "force error, RMS of the peak", "largest", "torque error, RMS of the peak",
+               "CPU time per simulated second [s]"], rows)
+    draw(points, bench.folder / "error-against-time.svg")
+
+
+def draw(points, path):
+    import matplotlib
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+    pyplot.rcParams["svg.hashsalt"] = "palpate"
+    figure, axes = pyplot.subplots(1, len(points), figsize=(3.6 * len(points), 3.6), sharey=True)
+    for place, (name, rows) in zip(axes, points.items()):
+        for i, (scheme, cpu, value) in enumerate(rows):
+            single = scheme.startswith("single")
+            place.loglog([cpu], [100 * value], "o" if single else "s", color=f"C{i}", markersize=8,
+                         fillstyle="full" if single else "none", label=scheme)
+        place.set_title(name, fontsize=9)
+        place.set_xlabel("CPU time per simulated second [s]")
+        place.grid(True, which="both", alpha=0.3)
+    axes[0].set_ylabel("force error, RMS [% of the peak]")
+    axes[-1].legend(fontsize=6, loc="upper right")
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None})
+    print(f"chart: {path}\n")
+
+
+def steps(bench):
+    rows = []
+    for scene in "touch-human", "touch-head":
+        for name, changes in [("partitioned, frozen, an exchange in each tick",
+                               [*EACH_TICK, "exchange.linearisation=frozen"]),
+                              ("single rate", SINGLE)]:
+            for threads in 1, 2:
+                figures = bench.best(scene, [*changes, f"integrator.threads={threads}"], repeats=5)
+                t, n = figures["timings"], figures["counts"]["steps"]
+                parts = [t[key] for key in ("contact_query_s", "linearise_s", "force_s", "tangent_s", "factor_s",
+                                            "solve_s", "loop_wall_s")]
+                rows.append([scene, name, str(threads), *(f"{1e3 * part / n:.2f}" for part in parts)])
+    table(["scene", "scheme", "threads", "query", "linearise", "forces", "tangent", "packing", "solve",
+           "whole step [ms]"], rows)
+
+
+def scale(bench):
+    rows, sizes, times = [], [], []
+    for cells in 0.0085, 0.0058, 0.004, 0.00275, 0.0019, 0.00128, 0.00088:
+        row = []
+        for threads in 1, 2:
+            changes = [*SINGLE, f"body.0.mesh.element_size_m={cells}", f"integrator.threads={threads}",
+                       "integrator.name=linearly-implicit-euler", "integrator.linear_solver=pcg-single",
+                       "record.states=false"]
+            figures = bench.best("press-ball", changes, "--duration-s", "0.1", repeats=2)
+            tets, step = figures["counts"]["tetrahedra"], figures["timings"]["loop_wall_s"] / figures["counts"]["steps"]
+            row.append(step)
+            if threads == 1:
+                sizes.append(math.log(tets))
+                times.append(math.log(step))
+        rows.append([f"{tets:,}", *(f"{1e3 * step:.2f}" for step in row), *(f"{1 / step:,.0f}" for step in row)])
+    table(["tetrahedra", "step, one thread [ms]", "two threads [ms]", "steps per second, one thread",
+           "two threads"], rows)
+    exponent = statistics.linear_regression(sizes[2:], times[2:]).slope
+    print(f"growth exponent from {math.exp(sizes[2]):,.0f} tetrahedra on: {exponent:.2f}\n")
+
+
+def clock(bench):
+    rows = []
+    for scene, threads, tick in [("press-ball", 1, 0.001), ("touch-human", 2, 0.001), ("touch-human", 2, 0.002),
+                                 ("touch-head", 2, 0.001), ("touch-head", 2, 0.002)]:
+        changes = [*SINGLE, f"integrator.threads={threads}", f"tool.tick_s={tick}",
+                   "integrator.name=linearly-implicit-euler", "record.states=false"]
+        figures = bench.run(scene, changes, "--realtime", "--duration-s", "10")
+        t = figures["real_time"]
+        felt = figures.get("against_virtual_time", [{}])[0].get("force_error_rms_of_peak")
+        rows.append([scene, f"{1e3 * tick:g} ms", str(threads), str(t["ticks_timed"]), str(t["skipped_ticks"]),
+                     f"{1e3 * t['tick_late_p50_s']:.2f}, {1e3 * t['tick_late_p99_s']:.2f}",
+                     f"{1e3 * t['tick_work_p50_s']:.2f}, {1e3 * t['tick_work_p99_s']:.2f}",
+                     f"{1e3 * t['exchange_latency_p50_s']:.2f}", percent(felt)])
+    table(["scene", "tick", "threads", "ticks", "skipped", "lateness, median and 99 % [ms]",
+           "work, median and 99 % [ms]", "handle to force, median [ms]",
+           "force error of the skipped ticks, RMS of the peak"], rows)
+
+
+def hand(bench):
+    rows = []
+    for stiffness in 300, 1000, 3000, 10000, 30000:
+        row = [f"{stiffness}"]
+        for own in SCHEMES["partitioned, points, 10 ms"], SCHEMES["partitioned, frozen, 10 ms"], SINGLE, BDF2:
+            changes = [*own, "device.type=hand", f"tool.coupling.stiffness_n_m={stiffness}",
+                       f"tool.coupling.damping_n_s_m={math.sqrt(0.1 * stiffness):.3g}",  # half of critical
+                       "device.max_force_n=100", "record.states=false"]
+            figures = bench.run("touch-human", changes)
+            row.append(f"{figures['hands'][0]['buzz_above_30_hz_rms_n']:.3g}")
+        rows.append(row)
+    table(["coupling [N/m]", "points", "frozen", "single rate, Euler", "single rate, BDF2"], rows)
+
+
+def main():
+    parts = {"error": error, "steps": steps, "scale": scale, "clock": clock, "hand": hand}
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("program")
+    arguments.add_argument("what", nargs="*", choices=[[], *parts], default=[])
+    arguments.add_argument("-o", "--output", type=Path, default=Path("out/kilohertz"))
+    chosen = arguments.parse_args()
+    chosen.output.mkdir(parents=True, exist_ok=True)
+    bench = Bench(chosen.program, chosen.output)
+    for name in chosen.what or parts:
+        parts[name](bench)
+
+
+if __name__ == "__main__":
+    main()
