@@ -141,8 +141,7 @@ const KeyTable<HandSpec>& hand_keys() {
 const KeyTable<CosimulationSpec>& exchange_keys() {
   static const KeyTable<CosimulationSpec> keys = {
       option("scheme", &CosimulationSpec::scheme,
-             "step tool and bodies separately and exchange forces, advance both by one integrator, or do so "
-             "once per tick with a sampled handle; \"auto\" measures whether the last holds its rate"),
+             "tool and bodies in two rates, as one system, or as one system stepped once per tick"),
       text("linearisation", &CosimulationSpec::linearisation, {"points", "condensed", "frozen"},
            "contact model between exchanges: contact points with the bodies' response, or a linear force "
            "model"),

@@ -50,56 +50,19 @@ TEST(HandSteppers, AmplifyAModeByTheClosedForm) {
   EXPECT_EQ(counted, 3 * 4 * (4 * 5 + 2 * 3));
 }
 
-// The first step is Euler's, (I - Z)^-1; on a linear problem the linearized steps are BDF2.
-TEST(LinearlyImplicitBdf2, AmplifiesAModeByTheClosedForm) {
-  const double w = 7.0;
-  const Mat2 I = Mat2::Identity();
-  for (const double W : {0.01, 0.3, 1.0, 10.0, 1000.0})
-    for (const double z : {0.0, 0.1, 1.0, 5.0}) {
-      Oscillator o(w, z, 0.3, -0.7 * w);
-      const auto stepper =
-          integrate::make_stepper(o.system, o.state, spec_of("linearly-implicit-bdf2", W / w));
-      const Mat2 Z = W * generator(z);
-      Vec2 before = o.scaled(), y = (I - Z).inverse() * before;
-      for (int n = 1; n <= 4; ++n) {
-        ASSERT_TRUE(stepper->advance_to(n * (W / w)).ok());
-        EXPECT_LT((o.scaled() - y).norm(), 1e-12 * std::max(1.0, y.norm()))
-            << "W = " << W << ", z = " << z << ", step " << n;
-        const Vec2 next = (1.5 * I - Z).inverse() * (2.0 * y - 0.5 * before);
-        before = y;
-        y = next;
-      }
-    }
-}
-
-// Steps of changing length keep the order: on x'' = -w^2 x, x(0) = 1, steps that alternate by a factor of 2.
-TEST(LinearlyImplicitBdf2, KeepsItsOrderWhereStepsChange) {
-  const double w = 3.0;
-  std::vector<double> steps, errors;
-  for (const int n : {60, 120, 240}) {
-    Oscillator o(w, 0.0, 1.0, 0.0);
-    const auto stepper = integrate::make_stepper(o.system, o.state, spec_of("linearly-implicit-bdf2", 1.0));
-    const double h = 1.0 / n;
-    for (int i = 0; i < n; ++i) {
-      const double start = i * h;
-      ASSERT_TRUE(stepper->advance_to(start + h / 3.0).ok());
-      ASSERT_TRUE(stepper->advance_to(start + h).ok());
-    }
-    steps.push_back(h);
-    errors.push_back(std::abs(o.scaled()[0] - std::cos(w)));
-  }
-  EXPECT_NEAR(slope(steps, errors), 2.0, 0.1) << errors.back();
-}
-
 // The first step is Alexander's SDIRK, R(Z) = (I - s Z)^-2 (I + (1 - 2 s) Z); then 3/2 y2 - 2 y1 + 1/2 y0 = Z
 // y2.
-TEST(Bdf2, AmplifiesAModeByTheClosedForm) {
+class Bdf2 : public testing::TestWithParam<const char*> {};
+// On a linear problem the linearized method is the method.
+INSTANTIATE_TEST_SUITE_P(Both, Bdf2, testing::Values("bdf2", "linearly-implicit-bdf2"));
+
+TEST_P(Bdf2, AmplifiesAModeByTheClosedForm) {
   const double s = 1.0 - std::sqrt(0.5), w = 7.0;
   const Mat2 I = Mat2::Identity();
   for (const double W : {0.01, 0.3, 1.0, 10.0, 1000.0})
     for (const double z : {0.0, 0.1, 1.0, 5.0}) {
       Oscillator o(w, z, 0.3, -0.7 * w);
-      const auto stepper = integrate::make_stepper(o.system, o.state, spec_of("bdf2", W / w));
+      const auto stepper = integrate::make_stepper(o.system, o.state, spec_of(GetParam(), W / w));
       const Mat2 Z = W * generator(z), inverse = (I - s * Z).inverse();
       Vec2 before, y = o.scaled();
       for (int n = 1; n <= 4; ++n) {
@@ -114,10 +77,10 @@ TEST(Bdf2, AmplifiesAModeByTheClosedForm) {
 }
 
 // Two consecutive steps of 0.6 and 1: the variable-step formula with r = 1/0.6, from y_before = y(t0).
-TEST(Bdf2, TakesAChangedStepByItsCoefficients) {
+TEST_P(Bdf2, TakesAChangedStepByItsCoefficients) {
   const double w = 2.0, z = 0.2, h0 = 0.06, h1 = 0.1, r = h1 / h0;
   Oscillator o(w, z, 0.3, 0.2);
-  const auto stepper = integrate::make_stepper(o.system, o.state, spec_of("bdf2", 0.1));
+  const auto stepper = integrate::make_stepper(o.system, o.state, spec_of(GetParam(), 0.1));
   const Vec2 y0 = o.scaled();
   ASSERT_TRUE(stepper->advance_to(h0).ok());
   const Vec2 y1 = o.scaled();

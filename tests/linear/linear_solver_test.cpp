@@ -264,7 +264,7 @@ TEST(LinearSolverRegistry, IsAskedForTheMethodsOwnWhereTheSpecNamesNone) {
         << entry.name;
     automatic += own == "auto", factored += own == "cholmod", none += own.empty();
   }
-  EXPECT_EQ(automatic, 6) << "linearly implicit Euler, and those with Newton iterations of their own";
+  EXPECT_EQ(automatic, 7) << "linearly implicit Euler, and those with Newton iterations of their own";
   EXPECT_EQ(automatic + factored + none, static_cast<int>(integrate::stepper_registry().size()));
   EXPECT_GT(factored, 20);
   EXPECT_GT(none, 5);

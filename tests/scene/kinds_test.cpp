@@ -256,9 +256,11 @@ TEST(Kinds, AFrictionTangentBelongsToFriction) {
 TEST(Kinds, ToolDeviceAndExchange) {
   const auto with = [](const Overrides& overrides) { return refusal(scene_texts::kWhole, overrides); };
   EXPECT_EQ(with({"exchange.linearisation=frozen"}), "accepted");
-  EXPECT_EQ(with({"exchange.scheme=monolithic", "exchange.linearisation=frozen"}),
-            "--set exchange.linearisation=frozen: exchange: linearisation does not apply to scheme = "
-            "\"monolithic\"; remove it (used by partitioned)");
+  EXPECT_EQ(
+      with({"exchange.scheme=monolithic", "exchange.linearisation=frozen"}),
+      "--set exchange.linearisation=frozen: exchange: linearisation does not apply to scheme = "
+      "\"monolithic\", which takes exchange_period_s, contact_refresh_s; remove it (used by partitioned, "
+      "auto)");
   EXPECT_EQ(with({"exchange.tunnelling=substep", "exchange.shortest_refresh_s=1e-4"}), "accepted");
   EXPECT_EQ(with({"exchange.shortest_refresh_s=1e-4"}),
             "--set exchange.shortest_refresh_s=1e-4: exchange: shortest_refresh_s does not apply to "

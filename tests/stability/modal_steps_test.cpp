@@ -34,7 +34,7 @@ TEST(ModalSteps, HaveTheOrderOfTheirMethod) {
     EXPECT_NEAR(order, column.entry->traits.order, 0.45) << column.label;
     ++checked;
   }
-  EXPECT_EQ(checked, 43);
+  EXPECT_EQ(checked, 44);
 }
 
 // Also tests the conditions that couple the two sides, which either side alone does not show.

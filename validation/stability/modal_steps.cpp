@@ -15,8 +15,7 @@
 //   classical Runge-Kutta                   1 + Z + Z^2/2 + Z^3/6 + Z^4/24
 //   symplectic Euler                        a' <- (1 - 2 z y) a' - y (w a),  then  w a <- w a + y a'
 //   BDF2                                    (3/2 - Z) x2 = 2 x1 - x0/2; the first step by Alexander's SDIRK
-//                                           of order 2, s = 1 - 1/sqrt 2: (1 - s Z)^-2 (1 + (1 - 2 s) Z);
-//                                           linearly implicit: the first step by Euler
+//                                           of order 2, s = 1 - 1/sqrt 2: (1 - s Z)^-2 (1 + (1 - 2 s) Z)
 //   generalised-alpha (Chung and Hulbert 1993), X = [D; V; A] = [w a; w H a'; w H^2 a''] = [w a; y a'; ..]:
 //     (1 - am) A1 + am A0 = -y^2 D_f - 2 z y V_f,      D_f = (1 - af) D1 + af D0, V_f alike,
 //     D1 = D0 + V0 + (1/2 - b) A0 + b A1,      V1 = V0 + (1 - g) A0 + g A1;  at first A0 = -y^2 D0 - 2 z y V0
@@ -46,11 +45,8 @@ ModalSteps::ModalSteps(const Column& column, double y, double z, double contact_
     one_step(one + Z * (one + 0.5 * Z * (one + Z / 3.0 * (one + 0.25 * Z))));
   } else if (column.name == "symplectic-euler") {
     one_step((MatX(2, 2) << 1.0 - y * y, y * (1.0 - 2.0 * z * y), -y, 1.0 - 2.0 * z * y).finished());
-  } else if (column.name == "bdf2") {
-    const double s = 1.0 - 1.0 / std::sqrt(2.0);
-    bdf2(Z, inverse_times(one - s * Z, inverse_times(one - s * Z, one + (1.0 - 2.0 * s) * Z)));
-  } else if (column.name == "linearly-implicit-bdf2") {
-    bdf2(Z, inverse_times(one - Z, one));
+  } else if (column.name == "bdf2" || column.name == "linearly-implicit-bdf2") {
+    bdf2(Z);
   } else if (column.name == "generalized-alpha") {
     generalized_alpha(y, z, IntegratorSpec{}.spectral_radius);
   } else if (contact_share > 0.0 && splits(column)) {
@@ -67,13 +63,15 @@ void ModalSteps::one_step(const MatX& step) {
   first_ = next_ = step;
 }
 
-void ModalSteps::bdf2(const MatX& Z, const MatX& first_step) {
+void ModalSteps::bdf2(const MatX& Z) {
   const MatX one = MatX::Identity(2, 2);
+  const double s = 1.0 - 1.0 / std::sqrt(2.0);
   start_ = MatX::Zero(4, 2);
   start_.topRows<2>() = one;
   first_ = next_ = MatX::Zero(4, 4);
   first_.bottomLeftCorner<2, 2>() = next_.bottomLeftCorner<2, 2>() = one;
-  first_.topLeftCorner<2, 2>() = first_step;
+  first_.topLeftCorner<2, 2>() =
+      inverse_times(one - s * Z, inverse_times(one - s * Z, one + (1.0 - 2.0 * s) * Z));
   next_.topLeftCorner<2, 2>() = inverse_times(1.5 * one - Z, 2.0 * one);
   next_.topRightCorner<2, 2>() = inverse_times(1.5 * one - Z, -0.5 * one);
 }

@@ -23,7 +23,7 @@ class ModalSteps {
 
  private:
   void one_step(const MatX& step);
-  void bdf2(const MatX& Z, const MatX& first_step);
+  void bdf2(const MatX& Z);
   void generalized_alpha(double y, double z, double r);
   MatX start_, first_, next_;
 };

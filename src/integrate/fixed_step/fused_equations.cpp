@@ -23,17 +23,12 @@ bool FusedEquations::assemble(const Equations& e, dynamics::ZeroRowSumMatrix& A,
 bool FusedEquations::assemble_beside(const Equations& e, dynamics::ZeroRowSumMatrix& A) {
   A_ = &A;
   assembly_.assemble_beside(e.at, e.s, e.dv_is_zero ? nullptr : &e.dv, e.h, beside_, A);
-  if (e.w) {
-    system_.apply_mass(e.at, *e.w, product_);
-    beside_ += product_;
-    for (const int dof : system_.driven_dofs()) beside_[dof] = 0.0;
-  }
   if (!all_finite(beside_)) return false;
   if (!A.border.empty()) corner_.compute(A.border.corner);
   return true;
 }
 
-/// Computes r = h (f - K (s + h du) - D (dv + du)) - M (dv - w + du) on free directions. The part of contact
+/// Computes r = h (f - K (s + h du) - D (dv + du)) - M (dv + du) on free directions. The part of contact
 /// and rigid blocks is linear in du with a matrix that is known.
 void FusedEquations::residual(const Equations& e, const VecX& du, VecX& r) {
   s_of_x_ = e.s + e.h * du;

@@ -6,15 +6,13 @@
 namespace palpate::integrate {
 
 /// Equations of a linearly implicit step of length h, with all quantities evaluated at one state:
-///     (M + h D + h^2 K) du = h (f - K s - D dv) - M (dv - w)   on free directions, du = 0 on driven ones.
+///     (M + h D + h^2 K) du = h (f - K s - D dv) - M dv       on free directions, du = 0 on driven ones.
 struct LinearizedEquations {
   const dynamics::StateView& at;
   double h;
   const VecX& s;   ///< Displacements of free and driven directions.
   const VecX& dv;  ///< Velocity changes of driven directions; zero on free ones.
   bool dv_is_zero;
-  /// Velocity changes that the integrator extrapolates on free directions, zero on driven ones; null: none.
-  const VecX* w = nullptr;
 };
 
 /// These equations by the fused assembly (dynamics::StepAssembly): right-hand side, matrix in mixed

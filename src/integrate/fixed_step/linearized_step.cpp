@@ -321,10 +321,6 @@ bool LinearizedStep::evaluate_right_hand_side(const Equations& e) {
     system_.apply_mass(e.at, e.dv, product_);
     rhs_ -= product_;
   }
-  if (e.w) {
-    system_.apply_mass(e.at, *e.w, product_);
-    rhs_ += product_;
-  }
   system_.reduce(e.at, rhs_);
   if (system_.any_driven()) {  // Geometric stiffness of the nodes that rigid blocks carry.
     product_.setZero(rhs_.size());

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "core/finite.h"
 #include "integrate/fixed_step/fixed_step.h"
 #include "integrate/fixed_step/linearized_step.h"
@@ -8,28 +10,38 @@ namespace {
 
 using namespace dynamics;
 
-/// Backward differences of order 1 or 2 with the force linearized about the start of the step, (q0, u0) at
-/// the time t1 = t0 + h of the implicit rule: one linear solve per step. With r = h/h_before, c = r^2/(1 + 2
-/// r), g = h (1 + r)/(1 + 2 r) (bdf2.cpp), or c = 0, g = h for order 1,
-///     u1 = u0 + w + g a,   q1 = q0 (+) theta,   theta = c theta_before + g u1,   w = c (u0 - u_before),
-///     M a = f1,   f1 = f - K theta - D (u1 - u0),
-/// where theta_before is the displacement of the last step. In the unknown du = u1 - u0,
-///     free directions:  (M + g D + g^2 K) du = g (f - K s) + M w,   s = c theta_before + g u0.
+/// Backward differences with one linear solve per step. With r = h/h_before, c = r^2/(1 + 2 r), g = h (1 +
+/// r)/(1 + 2 r) for order 2 (bdf2.cpp), c = 0, g = h for order 1, the implicit formula is
+///     M u1 = M v + g f(q1, u1),   v = u0 + c (u0 - u_before),   q1 = q0 (+) theta,
+///     theta = c theta_before + g u1,
+/// where theta_before is the displacement of the last step. The orders differ in the state about which the
+/// force is linearized.
+///
+/// Order 1, about the start (q0, u0) at the time t1 = t0 + h of the implicit rule: the step of Baraff and
+/// Witkin (1998), as in Galoppo et al. (2007), f1 = f - K h u1 - D (u1 - u0), with du = u1 - u0
+///     free directions:  (M + h D + h^2 K) du = h (f - h K u0)
 /// Driven directions move to x(t1), v(t1) exactly. Their displacement dx and velocity change dv enter the
 /// free rows unchanged,
-///     (M + g D + g^2 K) du = g (f - K s - D dv) - M (dv - w),
-///     s as above on free directions, dx on driven ones;   dv = 0 on free ones, w = 0 on driven ones,
-/// so no force acts in a body that moves rigidly with its drive.
+///     (M + h D + h^2 K) du = h (f - K s - D dv) - M dv,
+///     s = h u0 on free directions, dx on driven ones;   dv = 0 on free ones,
+/// so no force acts in a body that moves rigidly with its drive. L-stable on linear problems with M, D, K
+/// positive.
 ///
-/// Order 1: the step of Baraff and Witkin (1998), as in Galoppo et al. (2007). L-stable on linear problems
-/// with M, D, K positive.
-///
-/// Order 2: the linearized force errs by O(h^2), so the velocity by O(h^3) per step. On linear problems the
-/// force is its linearization, and the method is BDF2: A-stable at constant steps, L-stable, stiff order 2. A
-/// step of order 1 is taken after re-initialisation, where r is too large for zero-stability, and where
-/// friction began to stick or to slide in the last step (bdf2.cpp has the reasons); its error, O(h^2) once,
-/// leaves the order. Where contact begins, the kink of the force lies within a step: the error of that step
-/// is O(h^2) in the velocity for both orders.
+/// Order 2: a Stage of length g with the velocity v and the displacement theta = b + g u at its end,
+///     M u = M v + g f(q0 (+) theta, u, t),
+/// is linearized about the state that it has without any force, velocity v, displacement b + g v, driven
+/// directions at x(t). In du = u - v all terms but those of driven velocities vanish,
+///     (M + g D + g^2 K) du = g (f(q0 (+) (b + g v), v, t) - D dv) - M dv,   dv = v(t) - v on driven ones,
+/// one step of Newton's method. v errs by O(h), the displacement by O(h^2): the force and M(q) a, which turns
+/// with a rigid body, err by O(h^2), the velocity by O(h^3) per step. (About the start M(q) a would err by
+/// O(h), and the order would be 1 for bodies that turn.) A step of BDF2 is one Stage,
+///     v = u0 + c (u0 - u_before),   b = c theta_before,   t = t1;
+/// its starting step, by Alexander's SDIRK method (bdf2.cpp), two with g = s h, s = 1 - 1/sqrt(2):
+///     v = u0,   b = 0,   t = t0 + s h,   giving u_s;
+///     v = u0 + (1/s - 1) (u_s - u0),   b = (1 - s) h u_s,   t = t1.
+/// On linear problems the method is BDF2: A-stable at constant steps, L-stable, stiff order 2. Starting steps
+/// are taken after re-initialisation, where r is too large for zero-stability, and where friction began to
+/// stick or to slide in the last step.
 ///
 /// A value that is not finite is returned as a status. Dense output within the last step: linear, or cubic
 /// for order 2.
@@ -43,34 +55,94 @@ class LinearlyImplicit final : public FixedStep {
         equations_(system, std::move(solver), spec) {}
 
  private:
-  /// Sets g_, c_ and the start of the step.
-  void choose_formula(double h) {
-    g_ = h;
-    c_ = 0.0;
-    if (!two_steps_) return;
+  Attempt attempt(double h, double t1) override {
+    if (!two_steps_) return step_of_order_1(h, t1);
     u_start_ = state_.u();
     sticks_ = has_onset();
-    if (theta_before_.size() != layout().u_size || h > kLargestRatio * h_before_ || sticks_ != stuck_) return;
-    const double r = h / h_before_;
-    g_ = h * (1.0 + r) / (1.0 + 2.0 * r);
-    c_ = r * r / (1.0 + 2.0 * r);
+    const bool goes_on =
+        theta_before_.size() == layout().u_size && h <= kLargestRatio * h_before_ && sticks_ == stuck_;
+    return goes_on ? step_of_order_2(h, t1) : start(h, t1);
   }
 
-  /// Computes s, dv and w of the derivation above. A direction carried by a master moves with the master's
-  /// explicit prediction.
-  void predict(double t1) {
-    shift_ = g_ * state_.u();
-    if (c_ != 0.0) {
-      shift_ += c_ * theta_before_;
-      momentum_ = c_ * (u_start_ - u_before_);
-      for (const int dof : system_.driven_dofs()) momentum_[dof] = 0.0;
+  Attempt step_of_order_1(double h, double t1) {
+    predict_drives(t1, h);
+    const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
+    const Attempt solved = solve({at, h, shift_, change_, !drives_speed_up_});
+    if (solved.status != StepStatus::kOk) return solved;
+    move(h);
+    system_.impose(layout(), t1, q1_.data(), u1_.data());
+    return solved;
+  }
+
+  Attempt step_of_order_2(double h, double t1) {
+    const double r = h / h_before_, g = h * (1.0 + r) / (1.0 + 2.0 * r), c = r * r / (1.0 + 2.0 * r);
+    v_ = u_start_ + c * (u_start_ - u_before_);
+    base_ = c * theta_before_;
+    return stage(g, t1);
+  }
+
+  Attempt start(double h, double t1) {
+    static const double s = 1.0 - 1.0 / std::sqrt(2.0);
+    v_ = u_start_;
+    base_.setZero(layout().u_size);
+    const Attempt first = stage(s * h, state_.time() + s * h);
+    if (first.status != StepStatus::kOk) return first;
+    v_ = u_start_ + (1.0 / s - 1.0) * (u1_ - u_start_);
+    base_ = (1.0 - s) * h * u1_;
+    Attempt second = stage(s * h, t1);
+    second.iterations += first.iterations;
+    return second;
+  }
+
+  /// Solves a Stage with v_ and the displacement base_; the result is in u1_, q1_ and theta_.
+  Attempt stage(double g, double t) {
+    u1_ = v_;
+    displace(g, t, u1_, q_predicted_);
+    shift_.setZero(layout().u_size);
+    change_.setZero(layout().u_size);
+    bool drives_speed_up = false;
+    for (const int dof : system_.driven_dofs()) {
+      change_[dof] = u1_[dof] - v_[dof];
+      drives_speed_up = drives_speed_up || change_[dof] != 0.0;
     }
+    const StateView at = state_.view(t, q_predicted_.data(), v_.data());
+    const Attempt solved = solve({at, g, shift_, change_, !drives_speed_up});
+    if (solved.status != StepStatus::kOk) return solved;
+    u1_ += du_;
+    displace(g, t, u1_, q1_);
+    for (const int dof : system_.driven_dofs()) theta_[dof] = q1_[dof] - state_.q()[dof];
+    return solved;
+  }
+
+  Attempt solve(const LinearizedEquations& equations) {
+    const StepStatus status = equations_.solve(equations, du_, counters_);
+    if (status == StepStatus::kNotFinite) return {.status = status, .what = "the force is not finite"};
+    if (status != StepStatus::kOk)
+      return {.status = status, .what = "the step matrix is singular or not finite"};
+    if (!all_finite(du_)) return {.status = StepStatus::kNotFinite, .what = "the velocity is not finite"};
+    return {.iterations = 1};
+  }
+
+  /// Computes theta_ = base_ + g u and q = q0 (+) theta_, with u and q of driven directions as at the time t.
+  void displace(double g, double t, VecX& u, VecX& q) {
+    theta_ = base_ + g * u;
+    q.resize(layout().q_size);
+    q_dot(layout(), state_.q().data(), theta_.data(), q.data());
+    q += state_.q();
+    project(layout(), q.data());
+    system_.impose(layout(), t, q.data(), u.data());
+  }
+
+  /// Computes s and dv of order 1. A direction carried by a master moves with the master's explicit
+  /// prediction.
+  void predict_drives(double t1, double h) {
+    shift_ = h * state_.u();
     if (drives_speed_up_ || change_.size() != layout().u_size) change_.setZero(layout().u_size);
     drives_speed_up_ = false;
     if (!system_.any_driven()) return;
     if (layout().border_size() > 0) {  // Masters; without a master the imposed values depend on time alone.
-      q_dot(layout(), state_.q().data(), shift_.data(), q1_.data());
-      q1_ += state_.q();
+      q_dot(layout(), state_.q().data(), state_.u().data(), q1_.data());
+      q1_ = state_.q() + h * q1_;
       u1_ = state_.u();
     }
     system_.impose(layout(), t1, q1_.data(), u1_.data());
@@ -81,42 +153,26 @@ class LinearlyImplicit final : public FixedStep {
     }
   }
 
-  /// Computes the state after a velocity change du; without a border, in one pass over the vectors.
-  void move() {
+  /// Computes the state after a velocity change du of order 1; without a border, in one pass over the
+  /// vectors.
+  void move(double h) {
     if (layout().border_size() == 0) {
       const auto q = state_.q(), u = state_.u();
       for (Eigen::Index i = 0; i < du_.size(); ++i) {
         u1_[i] = u[i] + du_[i];
-        q1_[i] = q[i] + ((c_ != 0.0 ? c_ * theta_before_[i] : 0.0) + g_ * u1_[i]);
+        q1_[i] = q[i] + h * u1_[i];
       }
       return;
     }
     u1_ = state_.u() + du_;
-    theta_ = g_ * u1_;
-    if (c_ != 0.0) theta_ += c_ * theta_before_;
-    q_dot(layout(), state_.q().data(), theta_.data(), q1_.data());
-    q1_ += state_.q();
+    q_dot(layout(), state_.q().data(), u1_.data(), q1_.data());
+    q1_ = state_.q() + h * q1_;
     project(layout(), q1_.data());
-  }
-
-  Attempt attempt(double h, double t1) override {
-    choose_formula(h);
-    predict(t1);
-    const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
-    const StepStatus status = equations_.solve(
-        {at, g_, shift_, change_, !drives_speed_up_, c_ != 0.0 ? &momentum_ : nullptr}, du_, counters_);
-    if (status == StepStatus::kNotFinite) return {.status = status, .what = "the force is not finite"};
-    if (status != StepStatus::kOk)
-      return {.status = status, .what = "the step matrix is singular or not finite"};
-    if (!all_finite(du_)) return {.status = StepStatus::kNotFinite, .what = "the velocity is not finite"};
-    move();
-    system_.impose(layout(), t1, q1_.data(), u1_.data());
-    return {.iterations = 1};
   }
 
   void accepted(double h) override {
     if (!two_steps_) return;
-    theta_before_ = shift_ + g_ * du_;
+    theta_before_.swap(theta_);
     u_before_.swap(u_start_);
     h_before_ = h;
     stuck_ = sticks_;
@@ -130,11 +186,13 @@ class LinearlyImplicit final : public FixedStep {
   static constexpr double kLargestRatio = 2.4;  // Less than 1 + sqrt(2): zero-stability.
   const bool two_steps_;
   LinearizedStep equations_;
-  double g_ = 0.0, c_ = 0.0, h_before_ = 0.0;
+  VecX shift_, change_, du_;
+  bool drives_speed_up_ = false;         ///< change_ is not zero.
   bool sticks_ = false, stuck_ = false;  ///< At the start of this step, and of the previous one.
-  VecX shift_, change_, momentum_, du_, theta_;
-  VecX u_start_, u_before_, theta_before_;
-  bool drives_speed_up_ = false;  ///< change_ is not zero.
+  double h_before_ = 0.0;
+  VecX u_start_, u_before_;      ///< u at the start of this step, and of the previous one.
+  VecX theta_, theta_before_;    ///< Displacements of both steps.
+  VecX v_, base_, q_predicted_;  ///< Of a Stage.
 };
 
 }  // namespace
