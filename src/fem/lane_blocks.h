@@ -212,5 +212,5 @@ static void step(const ElementGroup* groups, const GroupEdges* edges, int count,
 }
 
 template <class Law>
-constexpr LawKernels kernels_of{force<Law>,      apply_tangent<Law>, tangent<Law>,
-                                step_force<Law>, step<Law>,          energy<Law>};
+constexpr LawKernels kernels_of{force<Law>, apply_tangent<Law>, tangent<Law>,  step_force<Law>,
+                                step<Law>,  energy<Law>,        von_mises<Law>};

@@ -46,6 +46,28 @@ PALPATE_INLINE void for_each_element(const ElementGroup* groups, int count, cons
   }
 }
 
+PALPATE_INLINE Pack square_root(Pack x) {
+  for (int l = 0; l < kWidth; ++l) x[l] = __builtin_sqrt(x[l]);
+  return x;
+}
+
+/// Adds V/4 times the von Mises norm of the Cauchy stress (stress.h) to the x-coordinates of the nodes.
+template <class Law>
+static void von_mises(const ElementGroup* groups, int count, const ElementModel& model,
+                      const ScalarPath& scalar, const ChunkFields& fields, double* f, LaneCounts& counts) {
+  for_each_element<Law>(
+      groups, count, fields, scalar,
+      counts, [&](const Lanes& at, const Matrix& F, const State<Law>& state) __attribute__((always_inline)) {
+        const Matrix PFt = times_transposed(Law::stress(model, F, state), F);
+        const Pack mean = (PFt.row[0].x + PFt.row[1].y + PFt.row[2].z) / 3.0, zero{};
+        const Pack det = state.det < kSmallestStressDet ? zero + kSmallestStressDet : state.det;
+        const Matrix deviator = PFt - Matrix{{{mean, zero, zero}, {zero, mean, zero}, {zero, zero, mean}}};
+        const Pack norm = square_root(1.5 * double_dot(deviator, deviator)) / det;
+        const Vector share{0.25 * at.volume() * norm, zero, zero};
+        for (int a = 0; a < 4; ++a) scatter_add(f, at.node(a), share);
+      });
+}
+
 template <class Law, bool kDamped>
 static void forces(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar,
                    const ChunkFields& fields, double* f, LaneCounts& counts) {

@@ -285,8 +285,7 @@ double SoftBody::dissipated_power(const StateView& state) {
 }
 
 VecX SoftBody::nodal_stress(const StateView& state) const {
-  return nodal_von_mises(impl_->elements.chunks(), impl_->block(state).x, *law_registry()[impl_->law].make,
-                         impl_->models_of(0.0, 0.0));
+  return impl_->elements.von_mises(impl_->models_of(0.0, 0.0), {impl_->block(state).x});
 }
 
 }  // namespace palpate::fem
