@@ -141,7 +141,10 @@ static void blocks_of(const ElementGroup* groups, const GroupEdges* edges, int c
           tangent = Law::tangent(model, F, state, scalar, modes, counts);
         if constexpr (kStep) {
           count_inverted(state.det, counts);
-          add_forces(at, G, step_stress<Law, kDamped>(at, G, F, state, tangent, model, fields), -volume, f);
+          add_forces(
+              at, G, step_stress < Law,
+              kDamped ? Damping::kOfVelocity : Damping::kNone > (at, G, F, state, tangent, model, fields),
+              -volume, f);
         }
         BlockParts<Law> e;
         Law::template set_parts<kBlocks == Blocks::kWarped>(e.elastic, model, F, state, tangent, G, volume);

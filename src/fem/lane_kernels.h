@@ -141,7 +141,8 @@ struct LawKernels {
   void (*tangent)(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel&,
                   const ScalarPath&, const ChunkFields&, const ChunkBlocks& upper, const ChunkBlocks& lower,
                   LaneCounts&);
-  /// f += nodal forces - stiffness times w.
+  /// f += nodal forces - stiffness times w. Where the model has damping, its velocity is v, or d_scale w if v
+  /// is null.
   void (*step_force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&,
                      const ChunkFields&, double* f, LaneCounts&);
   /// Fused assembly of one linearly implicit step: f += nodal forces - stiffness times w, and the blocks of a
@@ -152,11 +153,11 @@ struct LawKernels {
   /// Adds up elastic energies [J] by lane.
   void (*energy)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&,
                  const ChunkFields&, double sums[8], LaneCounts&);
-};
   /// Adds a quarter of each element's volume times the von Mises norm of its Cauchy stress [Pa] to the
   /// x-coordinates of its nodes, four doubles per node. det F is taken as at least kSmallestStressDet.
   void (*von_mises)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&,
                     const ChunkFields&, double* f, LaneCounts&);
+};
 
 /// Kernels shared by all laws.
 struct SharedKernels {

@@ -15,6 +15,8 @@ struct LinearizedEquations {
   bool dv_is_zero;
   /// Velocity changes that the integrator extrapolates on free directions, zero on driven ones; null: none.
   const VecX* w = nullptr;
+  /// s = h (u + dv) up to rounding, so that the displacements s + h du are proportional to the velocities.
+  bool is_proportional = false;
 };
 
 /// These equations by the fused assembly (dynamics::StepAssembly): right-hand side, matrix in mixed

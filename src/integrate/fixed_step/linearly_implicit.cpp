@@ -67,6 +67,7 @@ class LinearlyImplicit final : public FixedStep {
     }
     if (drives_speed_up_ || change_.size() != layout().u_size) change_.setZero(layout().u_size);
     drives_speed_up_ = false;
+    is_proportional_ = c_ == 0.0;
     if (!system_.any_driven()) return;
     if (layout().border_size() > 0) {  // Masters; without a master the imposed values depend on time alone.
       q_dot(layout(), state_.q().data(), shift_.data(), q1_.data());
@@ -77,7 +78,8 @@ class LinearlyImplicit final : public FixedStep {
     for (int dof : system_.driven_dofs()) {
       shift_[dof] = q1_[dof] - state_.q()[dof];
       change_[dof] = u1_[dof] - state_.u()[dof];
-      drives_speed_up_ = drives_speed_up_ || change_[dof] != 0.0;  // Always false for fixed nodes.
+      drives_speed_up_ = drives_speed_up_ || change_[dof] != 0.0;           // Always false for fixed nodes.
+      is_proportional_ = is_proportional_ && shift_[dof] == g_ * u1_[dof];  // Always true for these.
     }
   }
 
@@ -104,7 +106,8 @@ class LinearlyImplicit final : public FixedStep {
     predict(t1);
     const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
     const StepStatus status = equations_.solve(
-        {at, g_, shift_, change_, !drives_speed_up_, c_ != 0.0 ? &momentum_ : nullptr}, du_, counters_);
+        {at, g_, shift_, change_, !drives_speed_up_, c_ != 0.0 ? &momentum_ : nullptr, is_proportional_}, du_,
+        counters_);
     if (status == StepStatus::kNotFinite) return {.status = status, .what = "the force is not finite"};
     if (status != StepStatus::kOk)
       return {.status = status, .what = "the step matrix is singular or not finite"};
@@ -146,6 +149,7 @@ std::unique_ptr<Stepper> make_linearly_implicit_euler(System& system, State& sta
                                             std::move(solver));
 }
 
+  bool is_proportional_ = false;  ///< s = g (u0 + dv).
 std::unique_ptr<Stepper> make_linearly_implicit_bdf2(System& system, State& state, const IntegratorSpec& spec,
                                                      std::unique_ptr<LinearSolver> solver) {
   return std::make_unique<LinearlyImplicit>("linearly-implicit-bdf2", 2, system, state, spec,
