@@ -6,9 +6,9 @@
 #include <numbers>
 #include <vector>
 
+#include "core/finite.h"
 #include "distance/points.h"
 #include "mesh/curvature.h"
-#include "core/finite.h"
 #include "palpate/core/error.h"
 #include "proxy/least_width.h"
 

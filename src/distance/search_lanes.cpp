@@ -88,10 +88,10 @@ void take(const double* points, int count, const double* before, double* out, do
 
 /// Returns the sums of the entries of four vectors.
 PALPATE_INLINE Four sums(const Four* a) {
-  const Four ab = __builtin_shufflevector(a[0], a[1], 0, 4, 2, 6) +
-                  __builtin_shufflevector(a[0], a[1], 1, 5, 3, 7);
-  const Four cd = __builtin_shufflevector(a[2], a[3], 0, 4, 2, 6) +
-                  __builtin_shufflevector(a[2], a[3], 1, 5, 3, 7);
+  const Four ab =
+      __builtin_shufflevector(a[0], a[1], 0, 4, 2, 6) + __builtin_shufflevector(a[0], a[1], 1, 5, 3, 7);
+  const Four cd =
+      __builtin_shufflevector(a[2], a[3], 0, 4, 2, 6) + __builtin_shufflevector(a[2], a[3], 1, 5, 3, 7);
   return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
 }
 

@@ -83,22 +83,33 @@ class LinearlyImplicit final : public FixedStep {
     }
   }
 
-  /// Computes the state after a velocity change du; without a border, in one pass over the vectors.
+  /// Computes the state after a velocity change du: of the nodes, which come first with q' = u, in one pass
+  /// over the vectors.
   void move() {
-    if (layout().border_size() == 0) {
-      const auto q = state_.q(), u = state_.u();
-      for (Eigen::Index i = 0; i < du_.size(); ++i) {
-        u1_[i] = u[i] + du_[i];
-        q1_[i] = q[i] + ((c_ != 0.0 ? c_ * theta_before_[i] : 0.0) + g_ * u1_[i]);
-      }
+    const Eigen::Index nodal = layout().nodal_size;
+    const double *q = state_.q().data(), *u = state_.u().data(), *du = du_.data();
+    for (Eigen::Index i = 0; i < nodal; ++i) {
+      u1_[i] = u[i] + du[i];
+      q1_[i] = q[i] + ((c_ != 0.0 ? c_ * theta_before_[i] : 0.0) + g_ * u1_[i]);
+    }
+    for (const Block& block : layout().blocks)
+      if (block.kind != BlockKind::kNodes) move(block);
+  }
+  void move(const Block& rigid) {
+    const auto of_q = [&](auto&& v) { return v.segment(rigid.q_offset, rigid.q_size); };
+    const auto of_u = [&](auto&& v) { return v.segment(rigid.u_offset, rigid.u_size); };
+    auto u1 = of_u(u1_), q1 = of_q(q1_);
+    const auto q0 = of_q(state_.q());
+    u1 = of_u(state_.u()) + of_u(du_);
+    theta_ = g_ * u1;
+    if (c_ != 0.0) theta_ += c_ * of_u(theta_before_);
+    if (!rigid.kinematics) {
+      q1 = theta_ + q0;
       return;
     }
-    u1_ = state_.u() + du_;
-    theta_ = g_ * u1_;
-    if (c_ != 0.0) theta_ += c_ * theta_before_;
-    q_dot(layout(), state_.q().data(), theta_.data(), q1_.data());
-    q1_ += state_.q();
-    project(layout(), q1_.data());
+    rigid.kinematics->q_dot(q0, theta_, q1);
+    q1 += q0;
+    rigid.kinematics->project(q1);
   }
 
   Attempt attempt(double h, double t1) override {
@@ -138,6 +149,7 @@ class LinearlyImplicit final : public FixedStep {
   VecX shift_, change_, momentum_, du_, theta_;
   VecX u_start_, u_before_, theta_before_;
   bool drives_speed_up_ = false;  ///< change_ is not zero.
+  bool is_proportional_ = false;  ///< s = g (u0 + dv).
 };
 
 }  // namespace
@@ -149,7 +161,6 @@ std::unique_ptr<Stepper> make_linearly_implicit_euler(System& system, State& sta
                                             std::move(solver));
 }
 
-  bool is_proportional_ = false;  ///< s = g (u0 + dv).
 std::unique_ptr<Stepper> make_linearly_implicit_bdf2(System& system, State& state, const IntegratorSpec& spec,
                                                      std::unique_ptr<LinearSolver> solver) {
   return std::make_unique<LinearlyImplicit>("linearly-implicit-bdf2", 2, system, state, spec,
