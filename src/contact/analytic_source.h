@@ -95,7 +95,7 @@ class AnalyticSource final : public SampleSource {
                     "{}: {} samples passed to follow(), but the query kept {} points", Shape::kName,
                     samples.size(), kept_.size());
       if (samples.empty()) return;
-      surface_.update(state);
+      surface_.update(state, kept_);
       const Pose pose = motion_->pose(state), inverse = pose.inverse();
       shape_.move_to(pose);
       place_points();

@@ -1,9 +1,11 @@
 #include "palpate/contact/contact_force.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "contact/contact_force_impl.h"
 #include "core/counters.h"
+#include "core/finite.h"
 #include "palpate/core/error.h"
 
 namespace palpate::contact {
@@ -36,8 +38,9 @@ bool ContactForce::Impl::is_followed(const dynamics::StateView& state) const {
   const bool any_time = !followed.by_query && std::none_of(pairs.begin(), pairs.end(),
                                                            [](const Pair& p) { return p.anchors.on(); });
   if (followed.query != statistics.queries || (!any_time && followed.time != state.time)) return false;
-  if (followed.q.size() != state.q.size() || followed.q != state.q || followed.poses.size() != frames.size())
-    return false;
+  if (followed.q.size() != state.q.size() || followed.poses.size() != frames.size()) return false;
+  const auto bytes = static_cast<std::size_t>(state.q.size()) * sizeof(double);
+  if (std::memcmp(followed.q.data(), state.q.data(), bytes) != 0) return false;
   for (std::size_t i = 0; i < frames.size(); ++i)
     if (followed.poses[i].translation != frame_states[i].pose.translation ||
         followed.poses[i].rotation.coeffs() != frame_states[i].pose.rotation.coeffs())
@@ -47,8 +50,8 @@ bool ContactForce::Impl::is_followed(const dynamics::StateView& state) const {
 
 void ContactForce::Impl::follow(const dynamics::StateView& state) {
   if (!has_followers()) return;
-  // A failed trial of an integrator: the resulting force is not finite either.
-  if (!state.q.allFinite() || is_followed(state)) return;
+  // Not finite: a failed trial of an integrator, whose force is not finite either.
+  if (is_followed(state) || !all_finite(state.q)) return;
   note_followed(state, false);
   for (const Pair& pair : pairs) {
     if (!pair.follows) continue;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/finite.h"
 #include "distance/points.h"
 #include "mesh/curvature.h"
 #include "palpate/core/error.h"
@@ -150,15 +151,15 @@ MaterialPointState::MaterialPointState(MaterialPoints points) : points_(std::mov
   }
 }
 
-void MaterialPointState::update(const dynamics::StateView& state) {
-  if (is_rigid()) {
-    pose_ = points_.motion->pose(state);
-    twist_ = points_.motion->twist(state);
-    R_ = pose_.rotation.toRotationMatrix();
-    PALPATE_CHECK(R_.allFinite() && pose_.translation.allFinite(),
-                  "contact query at t = {}: the pose of a rigid surface is not finite", state.time);
-    return;
-  }
+void MaterialPointState::update_frame(const dynamics::StateView& state) {
+  pose_ = points_.motion->pose(state);
+  twist_ = points_.motion->twist(state);
+  R_ = pose_.rotation.toRotationMatrix();
+  PALPATE_CHECK(R_.allFinite() && pose_.translation.allFinite(),
+                "contact query at t = {}: the pose of a rigid surface is not finite", state.time);
+}
+
+const double* MaterialPointState::find_nodes(const dynamics::StateView& state) {
   const dynamics::Block* block = state.layout->find(points_.block_id);
   PALPATE_CHECK(block && block->kind == dynamics::BlockKind::kNodes,
                 "material points: block {} is not a node block of this State", points_.block_id);
@@ -166,9 +167,26 @@ void MaterialPointState::update(const dynamics::StateView& state) {
     node_offset_ = offset;
     ++pattern_version_;
   }
-  nodes_ = Eigen::Map<const Points>(state.q.data() + block->q_offset, 3, block->q_size / 3);
-  PALPATE_CHECK(nodes_.allFinite(), "contact query at t = {}: the position of a node is not finite",
+  nodes_.resize(3, block->q_size / 3);
+  return state.q.data() + block->q_offset;
+}
+
+void MaterialPointState::update(const dynamics::StateView& state) {
+  if (is_rigid()) return update_frame(state);
+  const double* const nodes = find_nodes(state);
+  nodes_ = Eigen::Map<const Points>(nodes, 3, nodes_.cols());
+  PALPATE_CHECK(all_finite(nodes_), "contact query at t = {}: the position of a node is not finite",
                 state.time);
+}
+
+void MaterialPointState::update(const dynamics::StateView& state, std::span<const int> points) {
+  if (is_rigid()) return update_frame(state);
+  const double* const nodes = find_nodes(state);
+  for (const int point : points) {
+    const SurfacePoint& p = at(point);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(p.count); ++k)
+      nodes_.col(p.node[k]) = Eigen::Map<const Vec3>(nodes + 3 * p.node[k]);
+  }
 }
 
 Vec3 MaterialPointState::position(int point, const Points& nodes, const Mat3& R, const Vec3& t) const {

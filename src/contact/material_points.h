@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "palpate/contact/obstacle.h"
@@ -38,6 +39,8 @@ class MaterialPointState {
 
   /// Evaluates the nodes or the frame at a state.
   void update(const dynamics::StateView& state);
+  /// Evaluates only the nodes of some points: until the next full update(), only their positions are valid.
+  void update(const dynamics::StateView& state, std::span<const int> points);
 
   int vertex_count() const { return static_cast<int>(points_.at.size()); }
   /// Returns the world position of a point, evaluated on demand, so that points that do not touch cost
@@ -61,6 +64,9 @@ class MaterialPointState {
   std::uint64_t vertex_pattern_version() const { return pattern_version_; }
 
  private:
+  void update_frame(const dynamics::StateView& state);
+  /// Checks the block and returns its node positions.
+  const double* find_nodes(const dynamics::StateView& state);
   bool is_rigid() const { return points_.motion != nullptr; }
   Vec3 position(int point, const Points& nodes, const Mat3& R, const Vec3& t) const;
   const SurfacePoint& at(int point) const { return points_.at[static_cast<std::size_t>(point)]; }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/counters.h"
+#include "core/finite.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/embedding.h"
 
@@ -48,7 +49,7 @@ void SurfaceState::update(const dynamics::StateView& state) {
   } else {
     for (int v = 0; v < vertex_count(); ++v) positions_.col(v) = state.position(node(v));
   }
-  PALPATE_CHECK((is_skin() ? nodes_ : positions_).allFinite(),
+  PALPATE_CHECK(all_finite(is_skin() ? nodes_ : positions_),
                 "contact query at t = {}: a surface position is not finite", state.time);
 }
 

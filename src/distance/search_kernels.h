@@ -43,6 +43,16 @@ struct SearchKernels {
   /// @param out  positions of all vertices, four numbers per vertex
   void (*evaluate)(const double* nodes, const int* carriers, const double* weights, const int* list,
                    int count, double* out);
+  /// Copies positions or velocities of three numbers per point to `out`, with four numbers per point, the
+  /// fourth of them 0. @param before  as `out`, at an earlier time  @param sum, moved  sums of out and of
+  /// out - before, four numbers each
+  void (*take)(const double* points, int count, const double* before, double* out, double* sum,
+               double* moved);
+  /// Returns the largest |now - before - about|^2 of points of four numbers each; a NaN is skipped.
+  /// @param before  null: all 0  @param about  four numbers, the fourth of them 0
+  /// @param low, high  corners of the bounding box of `now`, four numbers each, which are extended
+  double (*compare)(const double* now, const double* before, int count, const double* about, double* low,
+                    double* high);
   /// Computes the bounding box of the listed vertices: low and high corner, four numbers each.
   void (*bound)(const double* vertices, const int* list, int count, double* low, double* high);
   /// Computes the plane data of up to 32 triangles, relative to `origin`. @param corners  three vertices per

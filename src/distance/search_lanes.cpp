@@ -74,6 +74,51 @@ void evaluate(const double* nodes, const int* carriers, const double* weights, c
   }
 }
 
+void take(const double* points, int count, const double* before, double* out, double* sum, double* moved) {
+  Four total{}, change{};
+  for (int i = 0; i < count; ++i) {
+    const Four x = {points[3 * i], points[3 * i + 1], points[3 * i + 2], 0.0};
+    total += x;
+    change += x - load(before + 4 * i);
+    store(out + 4 * i, x);
+  }
+  store(sum, total);
+  store(moved, change);
+}
+
+/// Returns the sums of the entries of four vectors.
+PALPATE_INLINE Four sums(const Four* a) {
+  const Four ab =
+      __builtin_shufflevector(a[0], a[1], 0, 4, 2, 6) + __builtin_shufflevector(a[0], a[1], 1, 5, 3, 7);
+  const Four cd =
+      __builtin_shufflevector(a[2], a[3], 0, 4, 2, 6) + __builtin_shufflevector(a[2], a[3], 1, 5, 3, 7);
+  return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+}
+
+double compare(const double* now, const double* before, int count, const double* about, double* low,
+               double* high) {
+  const Four middle = load(about);
+  Four l = load(low), h = load(high), most{};
+  for (int i = 0; i < count; i += 4) {
+    Four squares[4];
+    for (int k = 0; k < 4; ++k) {
+      const int at = i + k < count ? i + k : count - 1;
+      const Four x = load(now + 4 * at);
+      l = x < l ? x : l;
+      h = x > h ? x : h;
+      const Four moved = (before ? x - load(before + 4 * at) : x) - middle;
+      squares[k] = moved * moved;
+    }
+    const Four squared = sums(squares);
+    most = squared > most ? squared : most;
+  }
+  store(low, l);
+  store(high, h);
+  double out = 0.0;
+  for (int k = 0; k < 4; ++k) out = most[k] > out ? most[k] : out;
+  return out;
+}
+
 void bound(const double* vertices, const int* list, int count, double* low, double* high) {
   Four l = load(vertices + 4 * list[0]), h = l;
   for (int i = 1; i < count; ++i) {
@@ -311,6 +356,6 @@ long search(Packet& packet, const Targets& targets) {
 }  // namespace
 
 extern const SearchKernels kSearch;
-const SearchKernels kSearch{evaluate, bound, planes, search};
+const SearchKernels kSearch{evaluate, take, compare, bound, planes, search};
 
 }  // namespace palpate::distance::PALPATE_KERNELS

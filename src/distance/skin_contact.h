@@ -175,7 +175,7 @@ class SkinContact {
               std::optional<OwnContact> own);
   static constexpr int kPacket = 16;  ///< Number of points that are searched together.
 
-  void move(const double* nodes_a, const double* nodes_b);
+  void move(const double* nodes_a, const double* nodes_b, Surface::Tree tree);
   bool is_searchable() const;
   const ContactTriangle& triangle(int side, int number) const {
     return meshes_[static_cast<std::size_t>(side)].triangles[static_cast<std::size_t>(number)];

@@ -31,9 +31,9 @@ void keep_faces(const Packet& packet, std::array<int, count>& faces) {
 
 }  // namespace
 
-void SkinContact::move(const double* nodes_a, const double* nodes_b) {
-  surfaces_[0].move(nodes_a);
-  surfaces_[1].move(nodes_b);
+void SkinContact::move(const double* nodes_a, const double* nodes_b, Surface::Tree tree) {
+  surfaces_[0].move(nodes_a, tree);
+  surfaces_[1].move(nodes_b, tree);
   const double step = (surfaces_[0].stretch() + surfaces_[1].stretch() +
                        (surfaces_[0].shift() - surfaces_[1].shift()).norm()) *
                       (1.0 + kRounding);
@@ -61,7 +61,7 @@ bool SkinContact::is_searchable() const {
 }
 
 void SkinContact::find(const double* nodes_a, const double* nodes_b, double near) {
-  move(nodes_a, nodes_b);
+  move(nodes_a, nodes_b, Surface::Tree::kFit);
   springs_.clear();
   triangles_.clear();
   if (!is_searchable()) return;
@@ -102,7 +102,7 @@ void SkinContact::list_missing() {
 }
 
 void SkinContact::follow(const double* nodes_a, const double* nodes_b) {
-  move(nodes_a, nodes_b);
+  move(nodes_a, nodes_b, Surface::Tree::kKeep);  // Few clusters are near the springs.
   if (springs_.empty()) return;
   if (!is_searchable()) {
     for (Spring& spring : springs_) spring.is_placed = false;
@@ -340,7 +340,7 @@ int SkinContact::find_cluster(int side, int cluster, int start, double near) {
 }
 
 void SkinContact::find_by_reference(const double* nodes_a, const double* nodes_b) {
-  move(nodes_a, nodes_b);
+  move(nodes_a, nodes_b, Surface::Tree::kFit);
   springs_.clear();
   find_side_by_reference(0);
   find_side_by_reference(1);
@@ -362,7 +362,7 @@ void SkinContact::find_side_by_reference(int side) {
     const ClusterNode& node = own.skin().tree[i];
     if (node.right) continue;
     own.place(node.begin);
-    const Eigen::AlignedBox3d& box = own.box(static_cast<int>(i));
+    const Eigen::AlignedBox3d box = own.box(static_cast<int>(i));
     if (!box.intersects(widened(other.bound(), most_lowered_[side]))) continue;
     const Foot middle = other.nearest(box.center());
     const double radius = 0.5 * box.diagonal().norm();

@@ -68,72 +68,116 @@ TrianglePoint nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, c
 Surface::Surface(const Skin& skin)
     : skin_(skin),
       nodes_(Padded::Zero(4, skin.node_count)),
-      way_(nodes_),
+      before_(nodes_),
       far_(Padded::Zero(4, skin.far_nodes.cols())),
+      far_before_(far_),
       far_list_(static_cast<std::size_t>(far_.cols())),
       leaf_(static_cast<std::size_t>(skin.cluster_count())),
       placed_(leaf_.size(), 0),
       vertices_(Padded::Zero(4, skin.vertex_count())),
-      boxes_(skin.tree.size()) {
+      boxes_(skin.tree.size()),
+      since_(skin.tree.size()) {
+  if (far_.cols() > 0) far_sum_ = skin.far_weights.cwiseAbs().colwise().sum().maxCoeff();
   std::iota(far_list_.begin(), far_list_.end(), 0);
   for (std::size_t i = 0; i < skin.tree.size(); ++i)
     if (!skin.tree[i].right) leaf_[static_cast<std::size_t>(skin.tree[i].begin)] = static_cast<int>(i);
 }
 
-void Surface::carry_far(const Padded& of_nodes) const {
+void Surface::carry_far(const Padded& of_nodes, Padded& far) const {
   best_search_kernels().evaluate(of_nodes.data(), skin_.far_nodes.data(), skin_.far_weights.data(),
-                                 far_list_.data(), static_cast<int>(far_list_.size()), far_.data());
+                                 far_list_.data(), static_cast<int>(far_list_.size()), far.data());
 }
+
+namespace {
+
+constexpr double kRounding = 16.0 * kUnit;
+
+double largest_coordinate(const Eigen::AlignedBox3d& box) {
+  return std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+}
+
+}  // namespace
+
+/// Bounding boxes of the nodes and of the vertices evaluated explicitly: corners, padded to four numbers.
+struct Surface::Extent {
+  struct Box {
+    Eigen::Vector4d low = Eigen::Vector4d::Constant(HUGE_VAL), high = Eigen::Vector4d::Constant(-HUGE_VAL);
+    Eigen::AlignedBox3d box() const { return {low.head<3>(), high.head<3>()}; }
+  };
+  Box nodes, far;
+};
 
 // A vertex is at sum w x over its nodes, with sum w = 1 and W = sum |w|. Velocity and displacement follow the
 // same formula: they differ from `about` by no more than W times the largest difference of a node. The few
-// vertices with large W are evaluated explicitly.
-double Surface::farthest(const Padded& of_nodes, const Vec3& about) const {
-  const double of_all = (of_nodes.topRows<3>().colwise() - about).colwise().squaredNorm().maxCoeff();
-  double most2 = skin_.weight_sum * skin_.weight_sum * of_all;
-  carry_far(of_nodes);
-  if (far_.cols() > 0)
-    most2 = std::max(most2, (far_.topRows<3>().colwise() - about).colwise().squaredNorm().maxCoeff());
-  return std::sqrt(most2);
+// vertices with large W are evaluated explicitly: with x for the velocity, and with x - x_before, up to
+// rounding, for the displacement.
+double Surface::farthest(const Padded& nodes, const double* nodes_before, const Padded& far,
+                         const double* far_before, const Vec3& about, Extent& extent) const {
+  const SearchKernels& kernels = best_search_kernels();
+  const Eigen::Vector4d middle(about[0], about[1], about[2], 0.0);
+  const auto most2 = [&](const Padded& now, const double* before, Extent::Box& box) {
+    return kernels.compare(now.data(), before, static_cast<int>(now.cols()), middle.data(), box.low.data(),
+                           box.high.data());
+  };
+  const double of_nodes = skin_.weight_sum * skin_.weight_sum * most2(nodes, nodes_before, extent.nodes);
+  return std::sqrt(far.cols() > 0 ? std::max(of_nodes, most2(far, far_before, extent.far)) : of_nodes);
 }
 
 double Surface::spread(const double* node_velocities, const Vec3& about) const {
-  way_.topRows<3>() = Eigen::Map<const Points>(node_velocities, 3, skin_.node_count);
-  return farthest(way_, about);
+  Eigen::Vector4d sum, moved;
+  Extent extent;
+  best_search_kernels().take(node_velocities, skin_.node_count, nodes_.data(), before_.data(), sum.data(),
+                             moved.data());
+  carry_far(before_, far_before_);
+  const double out = farthest(before_, nullptr, far_before_, nullptr, about, extent);
+  return sum.allFinite() && about.allFinite() ? out : std::numeric_limits<double>::infinity();
 }
 
 // If weights sum to 1, their negative entries sum to -(W - 1)/2: a vertex lies outside the nodes' box by no
 // more than (W - 1)/2 times the box's edges.
-void Surface::move(const double* nodes) {
-  constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
-  const Eigen::Map<const Points> now(nodes, 3, skin_.node_count);
+void Surface::move(const double* nodes, Tree tree) {
   const bool is_first = state_++ == 0;
-  way_.topRows<3>() = now - nodes_.topRows<3>();
-  nodes_.topRows<3>() = now;
-  if (!is_first) {
-    shift_ = way_.topRows<3>().rowwise().mean();
-    stretch_ = farthest(way_, shift_);
-  }
-  bound_ = {now.rowwise().minCoeff(), now.rowwise().maxCoeff()};
-  const double size = std::max(bound_.min().cwiseAbs().maxCoeff(), bound_.max().cwiseAbs().maxCoeff());
+  nodes_.swap(before_);
+  far_.swap(far_before_);
+  Eigen::Vector4d sum, moved;
+  best_search_kernels().take(nodes, skin_.node_count, before_.data(), nodes_.data(), sum.data(),
+                             moved.data());
+  carry_far(nodes_, far_);
+  shift_ = moved.head<3>() / skin_.node_count;
+  Extent extent;
+  stretch_ = farthest(nodes_, before_.data(), far_, far_before_.data(), shift_, extent);
+  bound_ = extent.nodes.box();
+  const double size = largest_coordinate(bound_);
   const Vec3 outside = 0.5 * (skin_.weight_sum - 1.0) * bound_.sizes() + Vec3::Constant(kRounding * size);
   bound_ = {bound_.min() - outside, bound_.max() + outside};
-  carry_far(nodes_);
-  if (far_.cols() > 0) {
-    bound_.extend(Vec3(far_.topRows<3>().rowwise().minCoeff()));
-    bound_.extend(Vec3(far_.topRows<3>().rowwise().maxCoeff()));
+  if (far_.cols() > 0) bound_.extend(extent.far.box());
+  stretch_ += far_sum_ * kRounding * size;
+  const bool is_known = !is_first && shift_.allFinite() && std::isfinite(stretch_);
+  if (!sum.allFinite()) bound_ = {Vec3::Constant(-HUGE_VAL), Vec3::Constant(HUGE_VAL)};
+  if (!is_known) {
+    shift_.setZero();
+    stretch_ = HUGE_VAL;
+  } else {
+    path_.way += shift_;
+    path_.wider += stretch_ + kRounding * (size + path_.way.cwiseAbs().maxCoeff());
   }
-  const Vec3 wider = Vec3::Constant(stretch_ + kRounding * size);
-  const bool is_known = !is_first && wider.allFinite();
+  if (tree == Tree::kFit || !is_known) fit_tree(is_known);
+}
+
+// Between two fits the box of any node of the tree contains its vertices after displacement by the sum of
+// the shifts, widened by the sum of the stretches: each move() displaces a vertex by shift() up to stretch().
+void Surface::fit_tree(bool is_known) {
   for (std::size_t i = skin_.tree.size(); i-- > 0;) {
     const ClusterNode& node = skin_.tree[i];
     if (node.right)
       boxes_[i] = boxes_[i + 1].merged(boxes_[static_cast<std::size_t>(node.right)]);
     else if (is_known)
-      boxes_[i] = {boxes_[i].min() + shift_ - wider, boxes_[i].max() + shift_ + wider};
+      boxes_[i] = box(static_cast<int>(i));
     else
       evaluate(node.begin);
   }
+  path_ = {};
+  std::fill(since_.begin(), since_.end(), path_);
 }
 
 void Surface::evaluate(int cluster) const {
@@ -145,7 +189,9 @@ void Surface::evaluate(int cluster) const {
   double low[4], high[4];
   kernels.evaluate(nodes_.data(), skin_.nodes.data(), skin_.weights.data(), list, count, vertices_.data());
   kernels.bound(vertices_.data(), list, count, low, high);
-  boxes_[static_cast<std::size_t>(leaf_[c])] = {Eigen::Map<const Vec3>(low), Eigen::Map<const Vec3>(high)};
+  const auto leaf = static_cast<std::size_t>(leaf_[c]);
+  boxes_[leaf] = {Eigen::Map<const Vec3>(low), Eigen::Map<const Vec3>(high)};
+  since_[leaf] = path_;
 }
 
 Vec3 Surface::point(int face, const Vec3& weights) const {

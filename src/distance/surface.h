@@ -31,7 +31,7 @@ struct SearchCount {
 /// Current configuration of a skin, with exact nearest-point queries.
 ///
 /// Vertices are evaluated on demand, cluster by cluster: the cost per state is proportional to the nodes, a
-/// tenth of the vertices, and the clusters near the queries.
+/// tenth of the vertices, and the clusters near the queries; with Tree::kFit, to all clusters.
 ///
 /// The nearest point is the minimum of the pair (squared distance, face), with the distance that
 /// nearest_on_triangle() computes. Whatever the initial bound of the search, a face is skipped only where a
@@ -42,8 +42,11 @@ class Surface {
   /// @param skin  must outlive the surface
   explicit Surface(const Skin& skin);
 
+  /// Upkeep of the tree in move(): kFit computes the box of every node from its children's, at a cost
+  /// proportional to the clusters; kKeep keeps the boxes, and box() displaces those that are requested.
+  enum class Tree { kFit, kKeep };
   /// Sets the nodes' positions. @param nodes  x y z per node [m]
-  void move(const double* nodes);
+  void move(const double* nodes, Tree tree = Tree::kFit);
   /// Returns the mean displacement of the nodes in the last move() [m].
   const Vec3& shift() const { return shift_; }
   /// Returns an upper bound on the distance of any vertex' displacement from shift() in the last move() [m];
@@ -59,7 +62,11 @@ class Surface {
   const Eigen::AlignedBox3d& bound() const { return bound_; }
   /// Returns a box around all vertices below a node of the skin's tree: the tight bounding box for a cluster
   /// that was placed in the current state, otherwise a box that contains it.
-  const Eigen::AlignedBox3d& box(int tree_node) const { return boxes_[static_cast<std::size_t>(tree_node)]; }
+  Eigen::AlignedBox3d box(int tree_node) const {
+    const auto i = static_cast<std::size_t>(tree_node);
+    const Vec3 moved = path_.way - since_[i].way, wider = Vec3::Constant(path_.wider - since_[i].wider);
+    return {boxes_[i].min() + moved - wider, boxes_[i].max() + moved + wider};
+  }
   /// Evaluates the vertices and the bounding box of a cluster, unless they are up to date.
   void place(int cluster) const {
     if (placed_[static_cast<std::size_t>(cluster)] != state_) evaluate(cluster);
@@ -99,17 +106,21 @@ class Surface {
  private:
   using Padded = Eigen::Matrix<double, 4, Eigen::Dynamic>;
 
-  void carry_far(const Padded& of_nodes) const;
-  double farthest(const Padded& of_nodes, const Vec3& about) const;
+  struct Extent;
+  void carry_far(const Padded& of_nodes, Padded& far) const;
+  double farthest(const Padded& nodes, const double* nodes_before, const Padded& far,
+                  const double* far_before, const Vec3& about, Extent& extent) const;
+  void fit_tree(bool is_known);
   void evaluate(int cluster) const;
   Vec3 unit_normal(int face) const;
   void search_cluster(int cluster, const Vec3& x, Foot& best) const;
 
   const Skin& skin_;
   Padded nodes_;
-  mutable Padded way_;  ///< Displacements or velocities of the nodes.
-  /// Values interpolated from the skin's far_nodes: positions, displacements or velocities.
-  mutable Padded far_;
+  mutable Padded before_;  ///< Positions before the last move(), or velocities of the nodes.
+  /// Positions interpolated from the skin's far_nodes; before the last move(), or velocities.
+  mutable Padded far_, far_before_;
+  double far_sum_ = 0.0;       ///< Largest sum of |weights| in far_weights.
   std::vector<int> far_list_;  ///< Identity index list 0, 1, 2, ...
   Vec3 shift_ = Vec3::Zero();
   double stretch_ = std::numeric_limits<double>::infinity();
@@ -118,7 +129,15 @@ class Surface {
   int state_ = 0;                    ///< Index of the last move().
   mutable std::vector<int> placed_;  ///< State in which each cluster was last evaluated.
   mutable Padded vertices_;
-  mutable std::vector<Eigen::AlignedBox3d> boxes_;
+  /// Sums over all moves since the tree was fitted: displacements shift(), and bounds on the distance of a
+  /// vertex' displacement from it [m].
+  struct Path {
+    Vec3 way = Vec3::Zero();
+    double wider = 0.0;
+  };
+  Path path_;
+  mutable std::vector<Eigen::AlignedBox3d> boxes_;  ///< Boxes when last computed, and `path_` at that time.
+  mutable std::vector<Path> since_;
   mutable SearchCount count_;
 };
 

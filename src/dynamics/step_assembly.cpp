@@ -228,25 +228,25 @@ void StepAssembly::add_corner(const StateView& state, const VecX& shift, double 
 void StepAssembly::residual(const StateView& state, const VecX& shift, const VecX& change, double h,
                             VecX& r) {
   PALPATE_CHECK(state.layout->border_size() == 0, "residual() of a step with rigid blocks");
-  add_residual(state, shift, change, h, true, r);
+  add_residual(state, shift, change, h, 0.0, true, r);
 }
 
 void StepAssembly::residual_of_bodies(const StateView& state, const VecX& shift, const VecX& change, double h,
-                                      VecX& r) {
-  add_residual(state, shift, change, h, false, r);
+                                      double rate, VecX& r) {
+  add_residual(state, shift, change, h, rate, false, r);
 }
 
 void StepAssembly::add_residual(const StateView& state, const VecX& shift, const VecX& change, double h,
-                                bool beside, VecX& r) {
+                                double rate, bool beside, VecX& r) {
   r.setZero(state.layout->u_size);
   for (const Part& part : parts_) {
-    if (part.fused) part.fused->add_step_force(state, shift, change, r);
+    if (part.fused) part.fused->add_step_force_at_rate(state, shift, change, rate, r);
     if (part.beside && beside) part.beside->add_step_force(state, shift, change, r);
     if (is_load(part)) part.term->add_force(state, r);
   }
   const VecX& mass = system_.nodal_mass();
-  r *= h;
-  r.head(mass.size()) -= mass.cwiseProduct(change.head(mass.size()));
+  r.head(mass.size()) = h * r.head(mass.size()) - mass.cwiseProduct(change.head(mass.size()));
+  r.tail(r.size() - mass.size()) *= h;
   for (int dof : system_.driven_dofs()) r[dof] = 0.0;
 }
 

@@ -95,6 +95,15 @@ LaneCounts ElementEvaluation::add_force(const ElementModels& models, const BodyF
 LaneCounts ElementEvaluation::add_step_force(const ElementModels& models, const BodyFields& at, double* f) {
   return add_nodal(law_->step_force, models, at, f);
 }
+VecX ElementEvaluation::von_mises(const ElementModels& models, const BodyFields& at) {
+  Points sums = Points::Zero(3, chunks_.node_count());
+  add_nodal(law_->von_mises, models, at, sums.data());
+  VecX out = sums.row(0);
+  for (Eigen::Index i = 0; i < out.size(); ++i)
+    if (const double volume = chunks_.nodal_volume[static_cast<std::size_t>(i)]; volume > 0.0)
+      out[i] /= volume;
+  return out;
+}
 LaneCounts ElementEvaluation::apply_tangent(const ElementModels& models, const BodyFields& at, double* y) {
   return add_nodal(law_->apply, models, at, y);
 }

@@ -34,8 +34,11 @@ class ElementEvaluation {
 
   /// f += nodal forces.
   LaneCounts add_force(const ElementModels& models, const BodyFields& at, double* f);
-  /// f += nodal forces - stiffness times w.
+  /// f += nodal forces - stiffness times w. Without a velocity v, damping is at d_scale w.
   LaneCounts add_step_force(const ElementModels& models, const BodyFields& at, double* f);
+  /// Returns the von Mises norm of the Cauchy stress of each element, averaged to the nodes by volume [Pa].
+  /// Where materials meet, the average is over both: a stress that jumps there is smeared over one element.
+  VecX von_mises(const ElementModels& models, const BodyFields& at);
   /// y += tangent times w.
   LaneCounts apply_tangent(const ElementModels& models, const BodyFields& at, double* y);
   /// A += tangent, in the rows of the body's nodes.

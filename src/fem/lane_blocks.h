@@ -141,7 +141,10 @@ static void blocks_of(const ElementGroup* groups, const GroupEdges* edges, int c
           tangent = Law::tangent(model, F, state, scalar, modes, counts);
         if constexpr (kStep) {
           count_inverted(state.det, counts);
-          add_forces(at, G, step_stress<Law, kDamped>(at, G, F, state, tangent, model, fields), -volume, f);
+          add_forces(
+              at, G, step_stress < Law,
+              kDamped ? Damping::kOfVelocity : Damping::kNone > (at, G, F, state, tangent, model, fields),
+              -volume, f);
         }
         BlockParts<Law> e;
         Law::template set_parts<kBlocks == Blocks::kWarped>(e.elastic, model, F, state, tangent, G, volume);
@@ -212,5 +215,5 @@ static void step(const ElementGroup* groups, const GroupEdges* edges, int count,
 }
 
 template <class Law>
-constexpr LawKernels kernels_of{force<Law>,      apply_tangent<Law>, tangent<Law>,
-                                step_force<Law>, step<Law>,          energy<Law>};
+constexpr LawKernels kernels_of{force<Law>, apply_tangent<Law>, tangent<Law>,  step_force<Law>,
+                                step<Law>,  energy<Law>,        von_mises<Law>};

@@ -46,6 +46,28 @@ PALPATE_INLINE void for_each_element(const ElementGroup* groups, int count, cons
   }
 }
 
+PALPATE_INLINE Pack square_root(Pack x) {
+  for (int l = 0; l < kWidth; ++l) x[l] = __builtin_sqrt(x[l]);
+  return x;
+}
+
+/// Adds V/4 times the von Mises norm of the Cauchy stress (stress.h) to the x-coordinates of the nodes.
+template <class Law>
+static void von_mises(const ElementGroup* groups, int count, const ElementModel& model,
+                      const ScalarPath& scalar, const ChunkFields& fields, double* f, LaneCounts& counts) {
+  for_each_element<Law>(
+      groups, count, fields, scalar,
+      counts, [&](const Lanes& at, const Matrix& F, const State<Law>& state) __attribute__((always_inline)) {
+        const Matrix PFt = times_transposed(Law::stress(model, F, state), F);
+        const Pack mean = (PFt.row[0].x + PFt.row[1].y + PFt.row[2].z) / 3.0, zero{};
+        const Pack det = state.det < kSmallestStressDet ? zero + kSmallestStressDet : state.det;
+        const Matrix deviator = PFt - Matrix{{{mean, zero, zero}, {zero, mean, zero}, {zero, zero, mean}}};
+        const Pack norm = square_root(1.5 * double_dot(deviator, deviator)) / det;
+        const Vector share{0.25 * at.volume() * norm, zero, zero};
+        for (int a = 0; a < 4; ++a) scatter_add(f, at.node(a), share);
+      });
+}
+
 template <class Law, bool kDamped>
 static void forces(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar,
                    const ChunkFields& fields, double* f, LaneCounts& counts) {
@@ -81,20 +103,28 @@ static void energy(const ElementGroup* groups, int count, const ElementModel& mo
       });
 }
 
-/// Returns the stress of a linearly implicit step: the stress of the state, its elastic change by w and, if
-/// damped, the damping stress at the velocity v.
-template <class Law, bool kDamped>
+/// Damping of a step: kOfChange is damping at the velocity d_scale w.
+enum class Damping { kNone, kOfVelocity, kOfChange };
+
+/// Returns the stress of a linearly implicit step: the stress of the state, its elastic change by w, and the
+/// damping stress at the velocity. The stress of the state is rounded alone: iterations evaluate this for
+/// ever smaller changes of w, whose sum with it would lose them.
+template <class Law, Damping kDamping>
 PALPATE_INLINE Matrix step_stress(const Lanes& at, const Gradients& G, const Matrix& F,
                                   const State<Law>& state, const typename Law::Tangent& tangent,
                                   const ElementModel& model, const ChunkFields& fields) {
-  Matrix P =
-      Law::stress(model, F, state) + Law::change(model, F, state, tangent, gradient_of(at, G, fields.w));
-  if constexpr (kDamped)
-    P = P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
-  return P;
+  const Matrix dF = gradient_of(at, G, fields.w);
+  const Matrix P = Law::stress(model, F, state) + Law::change(model, F, state, tangent, dF);
+  if constexpr (kDamping == Damping::kNone) return P;
+  if constexpr (kDamping == Damping::kOfVelocity)
+    return P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
+  ElementModel scaled = model;
+  scaled.damping_mu *= model.d_scale;
+  scaled.damping_lambda *= model.d_scale;
+  return P + F * full(damping_stress(symmetric_product(F, dF), scaled));
 }
 
-template <class Law, bool kDamped>
+template <class Law, Damping kDamping>
 static void step_forces(const ElementGroup* groups, int count, const ElementModel& model,
                         const ScalarPath& scalar, const ChunkFields& fields, double* f, LaneCounts& counts) {
   for_each_element<Law>(
@@ -104,7 +134,7 @@ static void step_forces(const ElementGroup* groups, int count, const ElementMode
         count_inverted(state.det, counts);
         typename Law::ScalarModes modes;
         const typename Law::Tangent tangent = Law::tangent(model, F, state, scalar, modes, counts);
-        add_forces(at, G, step_stress<Law, kDamped>(at, G, F, state, tangent, model, fields), -at.volume(),
+        add_forces(at, G, step_stress<Law, kDamping>(at, G, F, state, tangent, model, fields), -at.volume(),
                    f);
       });
 }
@@ -112,10 +142,12 @@ static void step_forces(const ElementGroup* groups, int count, const ElementMode
 template <class Law>
 static void step_force(const ElementGroup* groups, int count, const ElementModel& model,
                        const ScalarPath& scalar, const ChunkFields& fields, double* f, LaneCounts& counts) {
-  if (model.damping_mu > 0.0)
-    step_forces<Law, true>(groups, count, model, scalar, fields, f, counts);
+  if (model.damping_mu == 0.0)
+    step_forces<Law, Damping::kNone>(groups, count, model, scalar, fields, f, counts);
+  else if (fields.v)
+    step_forces<Law, Damping::kOfVelocity>(groups, count, model, scalar, fields, f, counts);
   else
-    step_forces<Law, false>(groups, count, model, scalar, fields, f, counts);
+    step_forces<Law, Damping::kOfChange>(groups, count, model, scalar, fields, f, counts);
 }
 
 template <class Law>

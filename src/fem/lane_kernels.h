@@ -28,6 +28,10 @@ struct GroupEdges {
   std::uint16_t edge[6][8];  ///< corners (0,1) (0,2) (0,3) (1,2) (1,3) (2,3)
 };
 
+/// Least det F in a Cauchy stress P F^T / det F, so that pictures of flat or inverted elements show a large
+/// stress, not an infinite one.
+constexpr double kSmallestStressDet = 0.1;
+
 /// Nodes that a thread is likely to need for its next chunk, and the nodal vectors of the body that are read
 /// or added to there, three doubles per node: kernels prefetch them.
 struct NodePrefetch {
@@ -137,7 +141,8 @@ struct LawKernels {
   void (*tangent)(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel&,
                   const ScalarPath&, const ChunkFields&, const ChunkBlocks& upper, const ChunkBlocks& lower,
                   LaneCounts&);
-  /// f += nodal forces - stiffness times w.
+  /// f += nodal forces - stiffness times w. Where the model has damping, its velocity is v, or d_scale w if v
+  /// is null.
   void (*step_force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&,
                      const ChunkFields&, double* f, LaneCounts&);
   /// Fused assembly of one linearly implicit step: f += nodal forces - stiffness times w, and the blocks of a
@@ -148,6 +153,10 @@ struct LawKernels {
   /// Adds up elastic energies [J] by lane.
   void (*energy)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&,
                  const ChunkFields&, double sums[8], LaneCounts&);
+  /// Adds a quarter of each element's volume times the von Mises norm of its Cauchy stress [Pa] to the
+  /// x-coordinates of its nodes, four doubles per node. det F is taken as at least kSmallestStressDet.
+  void (*von_mises)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&,
+                    const ChunkFields&, double* f, LaneCounts&);
 };
 
 /// Kernels shared by all laws.

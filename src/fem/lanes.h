@@ -22,9 +22,15 @@ PALPATE_INLINE void fetch(const void* first, int bytes) {
     __builtin_prefetch(static_cast<const char*>(first) + at, 0, kHowSoon);
 }
 PALPATE_INLINE bool any(Mask m) {
+#if PALPATE_WIDTH == 8
+  return _mm512_test_epi64_mask(reinterpret_cast<__m512i&>(m), reinterpret_cast<__m512i&>(m)) != 0;
+#elif PALPATE_WIDTH == 4
+  return _mm256_movemask_pd(reinterpret_cast<__m256d&>(m)) != 0;
+#else
   long long bits = 0;
   for (int l = 0; l < kWidth; ++l) bits |= m[l];
   return bits != 0;
+#endif
 }
 
 struct Vector {

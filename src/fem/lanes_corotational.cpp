@@ -1,4 +1,8 @@
 // Corotational law in SIMD lanes; derivation and scalar formulas: corotational.h.
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
 #include "fem/lane_kernels.h"
 
 namespace palpate::fem::PALPATE_KERNELS {

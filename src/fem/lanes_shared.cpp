@@ -1,4 +1,8 @@
 // Kernels that do not depend on the constitutive law.
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
 #include "fem/lane_kernels.h"
 
 namespace palpate::fem::PALPATE_KERNELS {

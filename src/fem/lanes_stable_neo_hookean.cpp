@@ -1,4 +1,8 @@
 // Stable neo-Hookean law in SIMD lanes; derivation and scalar formulas: stable_neo_hookean.cpp.
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
 #include "fem/lane_kernels.h"
 
 namespace palpate::fem::PALPATE_KERNELS {

@@ -240,12 +240,18 @@ void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_sc
 }
 
 void SoftBody::add_step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f) {
+  add_step_force_at_rate(state, shift, change, 0.0, f);
+}
+
+void SoftBody::add_step_force_at_rate(const StateView& state, const VecX& shift, const VecX& change,
+                                      double rate, VecX& f) {
   Impl& m = *impl_;
   const NodeBlock at = m.block(state);
   double* force = f.data() + at.u_offset;
   const double* more = change.data() + at.u_offset;
+  const double* const v = m.damped() && rate == 0.0 ? at.v : nullptr;
   const LaneCounts met = m.elements.add_step_force(
-      m.models_of(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr, shift.data() + at.u_offset, more}, force);
+      m.models_of(0.0, rate), {at.x, v, shift.data() + at.u_offset, v ? more : nullptr}, force);
   m.counts.inverted += met.inverted;
   m.counts.by_scalar += met.by_scalar;  // clamped is not counted: iterations apply this tangent repeatedly
   if (!m.dragged()) return;
@@ -285,8 +291,7 @@ double SoftBody::dissipated_power(const StateView& state) {
 }
 
 VecX SoftBody::nodal_stress(const StateView& state) const {
-  return nodal_von_mises(impl_->elements.chunks(), impl_->block(state).x, *law_registry()[impl_->law].make,
-                         impl_->models_of(0.0, 0.0));
+  return impl_->elements.von_mises(impl_->models_of(0.0, 0.0), {impl_->block(state).x});
 }
 
 }  // namespace palpate::fem

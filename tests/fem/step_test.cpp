@@ -110,6 +110,12 @@ TEST(Step, IsForceProductAndTangentInOne) {
           VecX left = VecX::Zero(c.x.size());
           body.add_step_force(at.state.view(), c.w, c.change, left);
           EXPECT_LT((left - (want - product)).norm(), 1e-12 * want.norm()) << set << ", without the matrix";
+          constexpr double kRate = 30.0;
+          const VecX to_rate = kRate * c.w - c.v;
+          VecX by_velocity = VecX::Zero(c.x.size()), by_shift = by_velocity;
+          body.add_step_force(at.state.view(), c.w, to_rate, by_velocity);
+          body.add_step_force_at_rate(at.state.view(), c.w, to_rate, kRate, by_shift);
+          EXPECT_LT((by_shift - by_velocity).norm(), 1e-12 * by_velocity.norm()) << set;
           EXPECT_EQ(product.norm() > 0.0, material.stiffness_damping > 0.0);
 
           double largest = 0.0;

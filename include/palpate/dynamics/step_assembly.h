@@ -26,6 +26,12 @@ class FusedStepTerm {
   /// Adds f += force - K shift - D change, without the matrix: contribution of the term to the residual of a
   /// step.
   virtual void add_step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f) = 0;
+  /// As add_step_force(), where u + change = rate shift up to rounding: damping is then a function of the
+  /// shift. @param rate  [1/s]; 0: u + change is not proportional to the shift
+  virtual void add_step_force_at_rate(const StateView& state, const VecX& shift, const VecX& change,
+                                      double /*rate*/, VecX& f) {
+    add_step_force(state, shift, change, f);
+  }
 };
 
 /// Optional capability of a ForceTerm: its tangent is outside the sparsity pattern of a step matrix, a
@@ -75,8 +81,9 @@ class StepAssembly {
   /// Assembles the bodies' part as assemble(), without A.points and A.border.
   void assemble_bodies(const StateView& state, const VecX& shift, double m_scale, double d_scale,
                        double k_scale, VecX& f, ZeroRowSumMatrix& A, bool keep = false);
-  /// Computes the bodies' part of residual().
-  void residual_of_bodies(const StateView& state, const VecX& shift, const VecX& change, double h, VecX& r);
+  /// Computes the bodies' part of residual(). @param rate  as for FusedStepTerm::add_step_force_at_rate()
+  void residual_of_bodies(const StateView& state, const VecX& shift, const VecX& change, double h,
+                          double rate, VecX& r);
   /// Adds f += D change of the bodies' part.
   void apply_body_damping(const StateView& state, const VecX& change, VecX& f);
   /// Assembles the part beside: b = h sum of (force - K shift - D change), zero along driven directions, and
@@ -104,8 +111,8 @@ class StepAssembly {
                   VecX& f, ZeroRowSumMatrix& A);
   void add_corner(const StateView& state, const VecX& shift, double m_scale, double d_scale, double k_scale,
                   VecX& f, MatX& corner);
-  void add_residual(const StateView& state, const VecX& shift, const VecX& change, double h, bool beside,
-                    VecX& r);
+  void add_residual(const StateView& state, const VecX& shift, const VecX& change, double h, double rate,
+                    bool beside, VecX& r);
   void update_own_pattern(const Layout& layout);
 
   System& system_;

@@ -72,6 +72,8 @@ class SoftBody : public dynamics::ForceTerm,
                      VecX& y) override;
   bool fuses_step() const override;
   std::uint64_t step_version() const override;
+  void add_step_force_at_rate(const dynamics::StateView& state, const VecX& shift, const VecX& change,
+                              double rate, VecX& f) override;
   void add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change,
                       VecX& f) override;
   void add_step(const dynamics::StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,

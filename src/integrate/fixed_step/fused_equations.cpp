@@ -33,7 +33,8 @@ bool FusedEquations::assemble_beside(const Equations& e, dynamics::ZeroRowSumMat
 void FusedEquations::residual(const Equations& e, const VecX& du, VecX& r) {
   s_of_x_ = e.s + e.h * du;
   if (!e.dv_is_zero) dv_of_x_ = e.dv + du;
-  assembly_.residual_of_bodies(e.at, s_of_x_, e.dv_is_zero ? du : dv_of_x_, e.h, r);
+  assembly_.residual_of_bodies(e.at, s_of_x_, e.dv_is_zero ? du : dv_of_x_, e.h,
+                               e.is_proportional ? 1.0 / e.h : 0.0, r);
   r += beside_;
   A_->points.add_product(du, -1.0, r);
   if (const dynamics::SparseBorder& border = A_->border; !border.empty()) {

@@ -13,6 +13,8 @@ struct LinearizedEquations {
   const VecX& s;   ///< Displacements of free and driven directions.
   const VecX& dv;  ///< Velocity changes of driven directions; zero on free ones.
   bool dv_is_zero;
+  /// s = h (u + dv) up to rounding, so that the displacements s + h du are proportional to the velocities.
+  bool is_proportional = false;
 };
 
 /// These equations by the fused assembly (dynamics::StepAssembly): right-hand side, matrix in mixed

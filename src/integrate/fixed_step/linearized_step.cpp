@@ -169,9 +169,19 @@ void LinearizedStep::evaluate_residual(const Equations& e, const VecX& du, VecX&
 /// Returns u.M u.
 double LinearizedStep::square_norm(const Equations& e, const VecX& u) {
   const VecX& mass = system_.nodal_mass();
-  if (mass.size() == u.size()) return u.dot(mass.cwiseProduct(u));
-  system_.apply_mass(e.at, u, product_);
-  return u.dot(product_);
+  const Eigen::Index nodal = mass.size(), border = u.size() - nodal;
+  if (nodal != e.at.layout->nodal_size) {
+    system_.apply_mass(e.at, u, product_);
+    return u.dot(product_);
+  }
+  const double sum = u.head(nodal).dot(mass.cwiseProduct(u.head(nodal)));
+  if (border == 0) return sum;
+  product_.resize(u.size());
+  product_.tail(border).setZero();
+  for (const auto& inertia : system_.inertias())
+    if (e.at.layout->find(inertia->block_id())->kind != dynamics::BlockKind::kNodes)
+      inertia->apply(e.at, u, product_);
+  return sum + u.tail(border).dot(product_.tail(border));
 }
 
 /// Returns whether |u1| > |u0| / (1 - eta) on free directions. Sets u1_ to u1 there, and to zero on driven

@@ -67,7 +67,7 @@ class LinearlyImplicit final : public FixedStep {
   Attempt step_of_order_1(double h, double t1) {
     predict_drives(t1, h);
     const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
-    const Attempt solved = solve({at, h, shift_, change_, !drives_speed_up_});
+    const Attempt solved = solve({at, h, shift_, change_, !drives_speed_up_, is_proportional_});
     if (solved.status != StepStatus::kOk) return solved;
     move(h);
     system_.impose(layout(), t1, q1_.data(), u1_.data());
@@ -139,6 +139,7 @@ class LinearlyImplicit final : public FixedStep {
     shift_ = h * state_.u();
     if (drives_speed_up_ || change_.size() != layout().u_size) change_.setZero(layout().u_size);
     drives_speed_up_ = false;
+    is_proportional_ = true;
     if (!system_.any_driven()) return;
     if (layout().border_size() > 0) {  // Masters; without a master the imposed values depend on time alone.
       q_dot(layout(), state_.q().data(), state_.u().data(), q1_.data());
@@ -149,25 +150,36 @@ class LinearlyImplicit final : public FixedStep {
     for (int dof : system_.driven_dofs()) {
       shift_[dof] = q1_[dof] - state_.q()[dof];
       change_[dof] = u1_[dof] - state_.u()[dof];
-      drives_speed_up_ = drives_speed_up_ || change_[dof] != 0.0;  // Always false for fixed nodes.
+      drives_speed_up_ = drives_speed_up_ || change_[dof] != 0.0;          // Always false for fixed nodes.
+      is_proportional_ = is_proportional_ && shift_[dof] == h * u1_[dof];  // Always true for these.
     }
   }
 
-  /// Computes the state after a velocity change du of order 1; without a border, in one pass over the
-  /// vectors.
+  /// Computes the state after a velocity change du of order 1: of the nodes, which come first with q' = u, in
+  /// one pass over the vectors.
   void move(double h) {
-    if (layout().border_size() == 0) {
-      const auto q = state_.q(), u = state_.u();
-      for (Eigen::Index i = 0; i < du_.size(); ++i) {
-        u1_[i] = u[i] + du_[i];
-        q1_[i] = q[i] + h * u1_[i];
-      }
+    const Eigen::Index nodal = layout().nodal_size;
+    const double *q = state_.q().data(), *u = state_.u().data(), *du = du_.data();
+    for (Eigen::Index i = 0; i < nodal; ++i) {
+      u1_[i] = u[i] + du[i];
+      q1_[i] = q[i] + h * u1_[i];
+    }
+    for (const Block& block : layout().blocks)
+      if (block.kind != BlockKind::kNodes) move(block, h);
+  }
+  void move(const Block& rigid, double h) {
+    const auto of_q = [&](auto&& v) { return v.segment(rigid.q_offset, rigid.q_size); };
+    const auto of_u = [&](auto&& v) { return v.segment(rigid.u_offset, rigid.u_size); };
+    auto u1 = of_u(u1_), q1 = of_q(q1_);
+    const auto q0 = of_q(state_.q());
+    u1 = of_u(state_.u()) + of_u(du_);
+    if (!rigid.kinematics) {
+      q1 = q0 + h * u1;
       return;
     }
-    u1_ = state_.u() + du_;
-    q_dot(layout(), state_.q().data(), u1_.data(), q1_.data());
-    q1_ = state_.q() + h * q1_;
-    project(layout(), q1_.data());
+    rigid.kinematics->q_dot(q0, u1, q1);
+    q1 = q0 + h * q1;
+    rigid.kinematics->project(q1);
   }
 
   void accepted(double h) override {
@@ -188,6 +200,7 @@ class LinearlyImplicit final : public FixedStep {
   LinearizedStep equations_;
   VecX shift_, change_, du_;
   bool drives_speed_up_ = false;         ///< change_ is not zero.
+  bool is_proportional_ = false;         ///< s = h (u0 + dv).
   bool sticks_ = false, stuck_ = false;  ///< At the start of this step, and of the previous one.
   double h_before_ = 0.0;
   VecX u_start_, u_before_;      ///< u at the start of this step, and of the previous one.
