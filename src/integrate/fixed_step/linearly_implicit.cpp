@@ -69,7 +69,7 @@ class LinearlyImplicit final : public FixedStep {
     drives_speed_up_ = false;
     is_proportional_ = c_ == 0.0;
     if (!system_.any_driven()) return;
-    if (layout().border_size() > 0) {  // Masters; without a master the imposed values depend on time alone.
+    if (system_.any_master()) {  // Otherwise the imposed values depend on time alone.
       q_dot(layout(), state_.q().data(), shift_.data(), q1_.data());
       q1_ += state_.q();
       u1_ = state_.u();
