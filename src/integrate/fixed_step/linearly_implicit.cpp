@@ -84,14 +84,15 @@ class LinearlyImplicit final : public FixedStep {
   }
 
   /// Computes the state after a velocity change du: of the nodes, which come first with q' = u, in one pass
-  /// over the vectors.
+  /// per vector.
   void move() {
     const Eigen::Index nodal = layout().nodal_size;
-    const double *q = state_.q().data(), *u = state_.u().data(), *du = du_.data();
-    for (Eigen::Index i = 0; i < nodal; ++i) {
-      u1_[i] = u[i] + du[i];
-      q1_[i] = q[i] + ((c_ != 0.0 ? c_ * theta_before_[i] : 0.0) + g_ * u1_[i]);
-    }
+    auto u1 = u1_.head(nodal), q1 = q1_.head(nodal);
+    u1 = state_.u().head(nodal) + du_.head(nodal);
+    if (c_ != 0.0)
+      q1 = state_.q().head(nodal) + (c_ * theta_before_.head(nodal) + g_ * u1);
+    else
+      q1 = state_.q().head(nodal) + g_ * u1;
     for (const Block& block : layout().blocks)
       if (block.kind != BlockKind::kNodes) move(block);
   }
