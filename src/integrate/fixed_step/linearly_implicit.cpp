@@ -141,7 +141,7 @@ class LinearlyImplicit final : public FixedStep {
     drives_speed_up_ = false;
     is_proportional_ = true;
     if (!system_.any_driven()) return;
-    if (layout().border_size() > 0) {  // Masters; without a master the imposed values depend on time alone.
+    if (system_.any_master()) {  // Otherwise the imposed values depend on time alone.
       q_dot(layout(), state_.q().data(), state_.u().data(), q1_.data());
       q1_ = state_.q() + h * q1_;
       u1_ = state_.u();
@@ -156,14 +156,12 @@ class LinearlyImplicit final : public FixedStep {
   }
 
   /// Computes the state after a velocity change du of order 1: of the nodes, which come first with q' = u, in
-  /// one pass over the vectors.
+  /// one pass per vector.
   void move(double h) {
     const Eigen::Index nodal = layout().nodal_size;
-    const double *q = state_.q().data(), *u = state_.u().data(), *du = du_.data();
-    for (Eigen::Index i = 0; i < nodal; ++i) {
-      u1_[i] = u[i] + du[i];
-      q1_[i] = q[i] + h * u1_[i];
-    }
+    auto u1 = u1_.head(nodal), q1 = q1_.head(nodal);
+    u1 = state_.u().head(nodal) + du_.head(nodal);
+    q1 = state_.q().head(nodal) + h * u1;
     for (const Block& block : layout().blocks)
       if (block.kind != BlockKind::kNodes) move(block, h);
   }
