@@ -152,8 +152,8 @@ void add_replay(CLI::App& app, Invocation& invocation) {
   palpate replay out/press-ball --set exchange.exchange_period_s=0.02
 
 Without changes only the ticks are computed again (in a single-rate scene with the bodies); they must equal
-the recorded ticks, also for a run in real time, else the exit status is 1.  With changes the scene runs again in virtual time under the recorded hand,
-and the perceptible difference is printed.)");
+the recorded ticks, also for a run in real time, else the exit status is 1. With changes the scene runs
+again in virtual time under the recorded hand, and the perceptible difference is printed.)");
   command->callback([arguments, &invocation] {
     invocation.factorises = true;
     invocation.action = [arguments] { return replay(*arguments); };

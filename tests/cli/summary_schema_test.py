@@ -27,7 +27,8 @@ UNITS = {"n_m_rad": ("N m/rad",), "n_s_m": ("N s/m",), "per_s": ("1/s",), "n_m":
 SNAKE_CASE = re.compile("[a-z][a-z0-9]*(_[a-z0-9]+)*")
 # Keys that no scene of this test has: they need an event that is rare, a peer, or minutes.
 ELSEWHERE = {"figures.options.ordering", "figures.sizes.smallest_step_part",
-             "figures.monolithic_reference.trouble", "figures.cells.total", "figures.cells.unexpected",
+             "figures.monolithic_reference.trouble",
+             "figures.virtual_time_reference.trouble", "figures.cells.total", "figures.cells.unexpected",
              "figures.timings.cells_cpu_s"}
 
 

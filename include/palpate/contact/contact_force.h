@@ -103,8 +103,9 @@ class ContactForce : public dynamics::ForceTerm,
   /// Returns the report of each pair, in the order of add_pair(). Its pointers are valid as long as this
   /// object.
   std::vector<PairReport> pairs() const;
+  /// Returns the number of pairs.
   std::size_t pair_count() const;
-  /// PairReport::deepest of one pair.
+  /// Returns PairReport::deepest of one pair.
   double deepest(std::size_t pair) const;
   /// Makes every source keep the data that pictures need, from the next query on.
   void keep_views();

@@ -23,6 +23,7 @@ enum class FrictionTangent {
   kSecant,     ///< Like kSymmetric, with the friction of the step's end, found by repeated solves.
   kSymmetric,  ///< Without the derivative of friction with respect to pressure, which is unsymmetric.
 };
+/// Returns the names of the values.
 constexpr std::array<std::string_view, 4> option_names(FrictionTangent) {
   return {"auto", "full", "secant", "symmetric"};
 }
@@ -56,7 +57,7 @@ struct ContactSpec {
   /// tau: damping of these springs divided by their stiffness [s]; in a scene the time between two queries.
   /// 0: no springs.
   double friction_retardation_s = 0.0;
-  FrictionTangent friction_tangent = FrictionTangent::kAuto;
+  FrictionTangent friction_tangent = FrictionTangent::kAuto;  ///< Tangent of friction.
   /// Samples with a smaller positive gap are kept as candidates [m]; 0: chosen from the mesh.
   double candidate_gap_m = 0.0;
   int pixels = 64;  ///< Image space: pixels along the longer edge of the image.

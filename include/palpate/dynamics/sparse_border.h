@@ -26,7 +26,9 @@ class SparseBorder {
 
   /// Returns the number of velocities of rigid blocks.
   int size() const { return static_cast<int>(corner.rows()); }
+  /// Returns whether there are no rigid blocks.
   bool empty() const { return corner.size() == 0; }
+  /// Returns the entries of all nodes.
   const std::vector<Entry>& entries() const { return entries_; }
   /// Sets the sizes, and all values to zero; memory is kept.
   void reset(int node_count, int size);

@@ -26,8 +26,8 @@ class FusedStepTerm {
   /// Adds f += force - K shift - D change, without the matrix: contribution of the term to the residual of a
   /// step.
   virtual void add_step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f) = 0;
-  /// As add_step_force(), where u + change = rate shift up to rounding: damping is then a function of the
-  /// shift. @param rate  [1/s]; 0: u + change is not proportional to the shift
+  /// Does the same where u + change = rate shift up to rounding, rate in 1/s: damping is then a function of
+  /// the shift. A rate of 0 means that u + change is not proportional to the shift.
   virtual void add_step_force_at_rate(const StateView& state, const VecX& shift, const VecX& change,
                                       double /*rate*/, VecX& f) {
     add_step_force(state, shift, change, f);
@@ -81,14 +81,14 @@ class StepAssembly {
   /// Assembles the bodies' part as assemble(), without A.points and A.border.
   void assemble_bodies(const StateView& state, const VecX& shift, double m_scale, double d_scale,
                        double k_scale, VecX& f, ZeroRowSumMatrix& A, bool keep = false);
-  /// Computes the bodies' part of residual(). @param rate  as for FusedStepTerm::add_step_force_at_rate()
+  /// Computes the bodies' part of residual(), with the rate of FusedStepTerm::add_step_force_at_rate().
   void residual_of_bodies(const StateView& state, const VecX& shift, const VecX& change, double h,
                           double rate, VecX& r);
   /// Adds f += D change of the bodies' part.
   void apply_body_damping(const StateView& state, const VecX& change, VecX& f);
   /// Assembles the part beside: b = h sum of (force - K shift - D change), zero along driven directions, and
-  /// M + h D + h^2 K to A.points and A.border.
-  /// @param change  velocity changes, zero for rigid blocks; null: all zero
+  /// M + h D + h^2 K to A.points and A.border. The velocity changes are zero for rigid blocks; null means
+  /// that all are zero.
   void assemble_beside(const StateView& state, const VecX& shift, const VecX* change, double h, VecX& b,
                        ZeroRowSumMatrix& A);
 

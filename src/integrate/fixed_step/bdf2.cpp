@@ -38,7 +38,7 @@ class Bdf2 final : public ImplicitStep {
  private:
   Attempt attempt(double h, double t1) override {
     u_start_ = state_.u();
-    sticks_ = has_onset();
+    sticks_ = sticks();
     const bool two_steps =
         theta_before_.size() == layout().u_size && h <= kLargestRatio * h_before_ && sticks_ == stuck_;
     return two_steps ? step(h, t1) : start(h, t1);

@@ -10,7 +10,6 @@
 #include "integrate/settings.h"
 #include "integrate/tuning.h"
 #include "palpate/core/error.h"
-#include "palpate/dynamics/repeated_step.h"
 
 namespace palpate::integrate {
 
@@ -119,15 +118,6 @@ StepResult FixedStep::cover(double t1, double h, double t_end) {
     result.residual = tried.residual;
     return result;
   }
-}
-
-bool FixedStep::has_onset() const {
-  const auto& terms = system_.terms();
-  const dynamics::StateView at = now();
-  return std::any_of(terms.begin(), terms.end(), [&](const auto& term) {
-    auto* const repeated = dynamic_cast<dynamics::RepeatedStepTerm*>(term.get());
-    return repeated && repeated->has_onset_at(at);
-  });
 }
 
 void FixedStep::accept(double h, double t1) {

@@ -64,8 +64,6 @@ class FixedStep : public dynamics::Stepper {
 
   /// Computes a = u' at (t, q, u); returns false when it is not finite.
   bool acceleration(double t, const double* q, const double* u, VecX& a);
-  /// Returns whether friction sticks at some contact of the State (RepeatedStepTerm::has_onset_at).
-  bool has_onset() const;
   const dynamics::Layout& layout() const { return state_.layout(); }
   dynamics::StateView now() const { return static_cast<const dynamics::State&>(state_).view(); }
 

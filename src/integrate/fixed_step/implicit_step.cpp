@@ -4,6 +4,7 @@
 
 #include "integrate/settings.h"
 #include "integrate/tuning.h"
+#include "palpate/dynamics/repeated_step.h"
 
 namespace palpate::integrate {
 
@@ -21,6 +22,15 @@ ImplicitStep::Attempt ImplicitStep::solve_stage(const Attempt& before) {
   return {newton.status, before.iterations + newton.iterations, newton.correction, newton.what, true};
 }
 
+bool ImplicitStep::sticks() {
+  const auto& terms = system_.terms();
+  const dynamics::StateView at = now();
+  return std::any_of(terms.begin(), terms.end(), [&](const auto& term) {
+    auto* const repeated = dynamic_cast<dynamics::RepeatedStepTerm*>(term.get());
+    return repeated && repeated->has_onset_at(at);
+  });
+}
+
 // At rest friction is zero by its law, and the acceleration there is the one without friction. Friction
 // reaches mu N within the time v_r/(mu g), which no step resolves, and methods that use the acceleration at
 // the start (the trapezoidal rule: half of it over h) would add h mu g/2 to the velocity permanently.
@@ -29,7 +39,7 @@ ImplicitStep::Attempt ImplicitStep::solve_stage(const Attempt& before) {
 // fails it is halved, as steps are.
 bool ImplicitStep::start_acceleration(double h, double t1, VecX& a) {
   const dynamics::StateView at = now();
-  if (has_onset()) {
+  if (sticks()) {
     Stage euler;
     euler.u = state_.u();
     for (int halvings = 0; halvings <= tuning::kHalvings; ++halvings, h /= 2.0) {

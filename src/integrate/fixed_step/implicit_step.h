@@ -14,6 +14,8 @@ class ImplicitStep : public FixedStep {
   /// Solves stage_ from the State; its end is written to q1_ and u1_, its unknown to a_. `before` is the
   /// result of an earlier stage of the same step, whose iterations are added.
   Attempt solve_stage(const Attempt& before = {});
+  /// Returns whether friction sticks at some contact of the State.
+  bool sticks();
   /// Computes u' at the State without its driven entries (no stage reads them); returns false where it is not
   /// finite. Where friction sticks, it is the acceleration at the end of a backward Euler step of length h to
   /// t1.

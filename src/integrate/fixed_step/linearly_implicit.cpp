@@ -4,6 +4,7 @@
 #include "integrate/fixed_step/fixed_step.h"
 #include "integrate/fixed_step/linearized_step.h"
 #include "integrate/make.h"
+#include "palpate/dynamics/repeated_step.h"
 
 namespace palpate::integrate {
 namespace {
@@ -40,8 +41,8 @@ using namespace dynamics;
 ///     v = u0,   b = 0,   t = t0 + s h,   giving u_s;
 ///     v = u0 + (1/s - 1) (u_s - u0),   b = (1 - s) h u_s,   t = t1.
 /// On linear problems the method is BDF2: A-stable at constant steps, L-stable, stiff order 2. Starting steps
-/// are taken after re-initialisation, where r is too large for zero-stability, and where friction began to
-/// stick or to slide in the last step.
+/// are taken after re-initialisation, and where r is too large for zero-stability. Steps with friction are of
+/// order 1: friction has kinks, and its solves (dynamics::RepeatedStepTerm) start from the start of the step.
 ///
 /// A value that is not finite is returned as a status. Dense output within the last step: linear, or cubic
 /// for order 2.
@@ -58,10 +59,26 @@ class LinearlyImplicit final : public FixedStep {
   Attempt attempt(double h, double t1) override {
     if (!two_steps_) return step_of_order_1(h, t1);
     u_start_ = state_.u();
-    sticks_ = has_onset();
-    const bool goes_on =
-        theta_before_.size() == layout().u_size && h <= kLargestRatio * h_before_ && sticks_ == stuck_;
+    if (has_friction()) {
+      const Attempt out = step_of_order_1(h, t1);
+      if (out.status == StepStatus::kOk) theta_ = shift_ + h * du_;
+      return out;
+    }
+    const bool goes_on = theta_before_.size() == layout().u_size && h <= kLargestRatio * h_before_;
     return goes_on ? step_of_order_2(h, t1) : start(h, t1);
+  }
+
+  /// Returns whether friction that is evaluated at the end of the step acts at the State.
+  bool has_friction() {
+    const StateView at = now();
+    bool out = false;
+    for (const auto& term : system_.terms())
+      if (auto* const repeated = dynamic_cast<RepeatedStepTerm*>(term.get());
+          repeated && repeated->begin_step(at)) {
+        repeated->end_step();
+        out = true;
+      }
+    return out;
   }
 
   Attempt step_of_order_1(double h, double t1) {
@@ -185,7 +202,6 @@ class LinearlyImplicit final : public FixedStep {
     theta_before_.swap(theta_);
     u_before_.swap(u_start_);
     h_before_ = h;
-    stuck_ = sticks_;
   }
   void forget(ReinitReason) override {
     equations_.forget();
@@ -197,9 +213,8 @@ class LinearlyImplicit final : public FixedStep {
   const bool two_steps_;
   LinearizedStep equations_;
   VecX shift_, change_, du_;
-  bool drives_speed_up_ = false;         ///< change_ is not zero.
-  bool is_proportional_ = false;         ///< s = h (u0 + dv).
-  bool sticks_ = false, stuck_ = false;  ///< At the start of this step, and of the previous one.
+  bool drives_speed_up_ = false;  ///< change_ is not zero.
+  bool is_proportional_ = false;  ///< s = h (u0 + dv).
   double h_before_ = 0.0;
   VecX u_start_, u_before_;      ///< u at the start of this step, and of the previous one.
   VecX theta_, theta_before_;    ///< Displacements of both steps.
