@@ -169,7 +169,7 @@ def scale(bench):
                        "integrator.name=linearly-implicit-euler", "integrator.linear_solver=pcg-single",
                        "record.states=false"]
             figures = bench.best("press-ball", changes, "--duration-s", "0.1", repeats=2)
-            tets = figures["counts"]["tetrahedra"]
+            tets = figures["sizes"]["tetrahedra"]
             step = figures["timings"]["loop_wall_s"] / figures["counts"]["steps"]
             row.append(step)
             if threads == 1:
