@@ -138,7 +138,7 @@ def draw(points, path):
         place.set_xlabel("CPU time per simulated second [s]")
         place.grid(True, which="both", alpha=0.3)
     axes[0].set_ylabel("force error, RMS [% of the peak]")
-    axes[-1].legend(fontsize=6, loc="upper right")
+    axes[-1].legend(fontsize=6, loc="lower right")
     figure.tight_layout()
     figure.savefig(path, metadata={"Date": None})
     print(f"chart: {path}\n")
