@@ -4,6 +4,7 @@
 #include "core/counters.h"
 #include "core/time_text.h"
 #include "loop/choose_scheme.h"
+#include "loop/haptic_record.h"
 #include "palpate/core/error.h"
 #include "report/run_report.h"
 #include "session/clock_figures.h"
@@ -103,7 +104,7 @@ void RunSession::attach_observers(const PictureOptions& pictures) {
     observers_.push_back(&*recorder_);
   }
   if (options_.trace) trace_.emplace(*world_, path("trace.csv"));
-  if (options_.against_monolithic || may_skip_ticks()) observers_.push_back(&memory_);
+  if (options_.against_monolithic) observers_.push_back(&memory_);
 }
 
 void RunSession::simulate(const Callbacks& callbacks) {
@@ -154,14 +155,14 @@ void RunSession::compare_with_monolithic(const Callbacks& callbacks) {
     ran_.missing.add("error against the monolithic solution", ran_.against->trouble);
 }
 
-bool RunSession::may_skip_ticks() const {
-  return options_.real_time && description_.exchange.scheme == scene::ExchangeScheme::kSingleRate;
-}
-
+/// Reads the hands' motions from the files of the run, so that a run in real time keeps no ticks in memory.
 void RunSession::compare_with_every_tick(const Callbacks& callbacks) {
-  if (!may_skip_ticks() || !ran_.is_complete() || ran_.result.real_time->skipped_ticks == 0) return;
-  ran_.against_every_tick =
-      compare::against_every_tick(*world_, memory_.records(), callbacks.progress, callbacks.stop);
+  if (!ran_.is_complete() || !ran_.result.real_time || ran_.result.real_time->skipped_ticks == 0) return;
+  std::vector<loop::HapticRecord> records;
+  try {
+    records = loop::read_haptic_records(ran_.folder, description_);
+  } catch (const Error& e) { return ran_.missing.add("error of skipped ticks", e.what()); }
+  ran_.against_every_tick = compare::against_every_tick(*world_, records, callbacks.progress, callbacks.stop);
   if (!ran_.against_every_tick->stopped && !ran_.against_every_tick->trouble.empty())
     ran_.missing.add("error of skipped ticks", ran_.against_every_tick->trouble);
 }

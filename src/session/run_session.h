@@ -59,7 +59,6 @@ class RunSession {
 
  private:
   scene::Description chosen(const scene::Description& description);
-  bool may_skip_ticks() const;
   void compare_with_monolithic(const Callbacks& callbacks);
   void compare_with_every_tick(const Callbacks& callbacks);
   void assemble();

@@ -216,9 +216,10 @@ class LinearlyImplicit final : public FixedStep {
   bool drives_speed_up_ = false;  ///< change_ is not zero.
   bool is_proportional_ = false;  ///< s = h (u0 + dv).
   double h_before_ = 0.0;
-  VecX u_start_, u_before_;      ///< u at the start of this step, and of the previous one.
-  VecX theta_, theta_before_;    ///< Displacements of both steps.
-  VecX v_, base_, q_predicted_;  ///< Of a Stage.
+  VecX u_start_, u_before_;    ///< u at the start of this step, and of the previous one.
+  VecX theta_, theta_before_;  ///< Displacements of both steps.
+  VecX v_, base_;              ///< v and b of the current Stage.
+  VecX q_predicted_;           ///< Positions at its end without any force.
 };
 
 }  // namespace
