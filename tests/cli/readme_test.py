@@ -2,7 +2,7 @@
 """Runs every command of a page, in order, as a new user would: in one folder, with the files that the page
 asks to save there.
 
-    readme_test.py PROGRAM Readme|FirstTouch|Studies
+    readme_test.py PROGRAM Readme|FirstTouch|ChooseAnIntegrator|IsMyLoopStable|Studies
 """
 import csv
 import re
@@ -136,6 +136,60 @@ class FirstTouch(Page, unittest.TestCase):
         for method in ("cvode-bdf", "linearly-implicit-euler"):
             self.assertGreaterEqual(len(re.findall(rf"^{method} +\S", table, re.M)), 3)
         self.assertTrue((self.folder / "out/compare/report.html").exists())
+
+
+class ChooseAnIntegrator(Page, unittest.TestCase):
+    page = "docs/choose-an-integrator.md"
+    least = 5
+
+    def test_the_exchange_error_is_what_the_page_says(self):
+        said = self.said_by("--against-monolithic")
+        share = re.search(r"force error \S+ N RMS \((\S+) % of the peak", said)
+        self.assertLess(abs(float(share.group(1)) - 0.3), 0.1)
+
+    def test_the_comparison_says_what_the_page_says(self):
+        said = self.said_by("compare press-ball")
+        for heading in ("position error at most", "fitted order", "out of time"):
+            self.assertIn(heading, said)
+        euler = re.search(r"^linearly-implicit-euler +(\S+) in step_s", said, re.M)
+        self.assertLess(abs(float(euler.group(1)) - 1.0), 0.2)
+        self.assertTrue((self.folder / "out/choice/report.html").exists())
+
+    def test_nobody_notices_the_tighter_tolerance(self):
+        self.assertIn("noticeable (over 7 %) in 0 % of the ticks", self.said_by("diff"))
+
+
+class IsMyLoopStable(Page, unittest.TestCase):
+    page = "docs/is-my-loop-stable.md"
+    least = 7
+
+    def energy(self, *words):
+        """Returns the minimum and the final energy at the port that the run printed [J]."""
+        found = re.search(r"minimum (\S+) J, at the end (\S+) J", self.said_by(*words))
+        return float(found.group(1)), float(found.group(2))
+
+    def test_the_limit_is_what_the_page_shows(self):
+        shown = re.search(r"```text\n(.*?)```", (TREE / self.page).read_text(), re.S).group(1)
+        self.assertIn(" ".join(shown.split()), self.said_by("-o out/limits"))
+        self.assertTrue(self.said_by("-o out/stiff").endswith("unstable\n"))
+
+    def test_the_table_is_what_the_runs_print(self):
+        text = (TREE / self.page).read_text()
+        rows = re.findall(r"^\| (\d+) \| (\S+) \| (\S+) \| (\S+) \|$", text, re.M)
+        self.assertEqual([row[0] for row in rows], ["300", "3000", "8000"])
+        for stiffness, buzz, *energies in rows:
+            words = ("observe", f"-o out/k{stiffness}")
+            printed = float(re.search(r"buzz: (\S+) N", self.said_by(*words)).group(1))
+            self.assertLess(abs(printed - float(buzz)), 0.1 * printed)
+            for shown, energy in zip(energies, self.energy(*words)):
+                self.assertLess(abs(float(shown) - energy), 1e-3 * 0.06 + 0.1 * abs(energy))
+
+    def test_the_remedies_help(self):
+        stiff = self.energy("observe", "-o out/k8000")
+        self.assertGreater(self.energy("-o out/no-delay")[0], 0.5 * stiff[0])
+        least, end = self.energy("-o out/control")
+        self.assertGreater(least, 0.02 * stiff[0])
+        self.assertGreater(end, 0.0)
 
 
 class Studies(Page, unittest.TestCase):
