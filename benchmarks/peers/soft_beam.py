@@ -14,6 +14,7 @@ Prints tables in Markdown.
 """
 import argparse
 import json
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -185,6 +186,9 @@ def main():
     parser.add_argument("program", type=Path, help="the palpate program")
     parser.add_argument("--across", type=int, nargs="+", default=[4, 8], help="cubes across the height")
     arguments = parser.parse_args()
+    for other in ("node", "npm"):
+        if not shutil.which(other):
+            sys.exit(f"{other} is missing: MuJoCo runs in it (Debian packages nodejs and npm)")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         install = ["npm", "install", "--silent", "--ignore-scripts", "--no-audit", "--no-fund"]
