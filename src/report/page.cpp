@@ -107,7 +107,10 @@ std::string Page::html() const {
     scripts += fmt::format("<script>/*<![CDATA[*/\n{}/*]]>*/</script>\n", script);
   };
   if (interacts_) add(page_script());
-  if (turns_) add(view_script());
+  if (turns_) {
+    add(three_script());
+    add(view_script());
+  }
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>" +
          title + "</title>\n<style>" + kStyleSheet + "</style>\n</head>\n<body>\n<main>\n<h1>" + title +

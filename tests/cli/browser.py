@@ -105,9 +105,11 @@ class Browser:
         self.call("Emulation.setEmulatedMedia", features=[
             {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
 
-    def open(self, path):
+    def open(self, place):
+        """Opens a file, or an address that begins with http."""
         self.loaded, self.requests, self.errors = False, [], []
-        self.call("Page.navigate", url=Path(path).resolve().as_uri())
+        url = str(place) if str(place).startswith("http") else Path(place).resolve().as_uri()
+        self.call("Page.navigate", url=url)
         until = time.monotonic() + PATIENCE_S
         while not self.loaded:
             self._note(self._message(until))
@@ -130,6 +132,22 @@ class Browser:
         common = {"key": key, "code": code or key, "windowsVirtualKeyCode": {"Enter": 13}.get(key, 0)}
         self.call("Input.dispatchKeyEvent", type="keyDown", **common, **({"text": text} if text else {}))
         self.call("Input.dispatchKeyEvent", type="keyUp", **common)
+
+    def drag(self, start, end, steps=20, button="left", modifiers=0):
+        """Drags the mouse from one point of the window to another [CSS pixels]; modifiers: Alt 1, Ctrl 2,
+        Shift 8."""
+        mouse = {"button": button, "modifiers": modifiers, "clickCount": 1}
+        self.call("Input.dispatchMouseEvent", type="mouseMoved", x=start[0], y=start[1])
+        self.call("Input.dispatchMouseEvent", type="mousePressed", x=start[0], y=start[1], **mouse)
+        for step in range(1, steps + 1):
+            x, y = (a + (b - a) * step / steps for a, b in zip(start, end))
+            self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y,
+                      buttons={"left": 1, "right": 2, "middle": 4}[button], **mouse)
+        self.call("Input.dispatchMouseEvent", type="mouseReleased", x=end[0], y=end[1], **mouse)
+
+    def wheel(self, point, pixels, modifiers=0):
+        self.call("Input.dispatchMouseEvent", type="mouseWheel", x=point[0], y=point[1], deltaX=0,
+                  deltaY=pixels, modifiers=modifiers)
 
     def picture(self, path, whole=False):
         data = self.call("Page.captureScreenshot", captureBeyondViewport=whole)["data"]

@@ -15,7 +15,7 @@ COLUMNS = 110
 NAMES = (".h", ".cpp", ".inl", ".py", ".toml", ".cmake", ".in", "CMakeLists.txt", ".md", "palpate", ".ci/run",
          ".vert", ".frag", ".comp", ".glsl", ".js", ".mjs", ".cff", ".yml")
 # Bundled libraries, and a maintainer's npm packages.
-MADE_ELSEWHERE = ("src/report/page/dist/", "src/report/page/node_modules/")
+MADE_ELSEWHERE = ("src/report/page/dist/", "src/report/page/node_modules/", "src/live/page/dist/")
 
 
 def version_wanted():

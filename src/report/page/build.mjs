@@ -1,31 +1,54 @@
-// npm ci && npm run build: makes dist/ from src/ and the two libraries.  Only a maintainer who changes a file
-// here needs Node; dist/ is committed, and the build of palpate embeds it.
+// npm ci && npm run build: makes dist/ from src/ and the two libraries, and ../../live/page/dist.  Only a
+// maintainer who changes a file here or there needs Node; dist/ is committed, and palpate's build embeds it.
 import { createHash } from "node:crypto";
-import { readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { build } from "esbuild";
 
-// tests/report/bundle_test.py computes the same, and so finds a bundle that was not made again.
-const hash = createHash("sha256");
-const sources = readdirSync("src").sort().map((name) => `src/${name}`);
-for (const name of ["build.mjs", "package-lock.json", ...sources]) hash.update(readFileSync(name));
-const made = `made by src/report/page/build.mjs, sources sha256 ${hash.digest("hex")}`;
+const LIVE = "../../live/page";
+
+/// tests/report/bundle_test.py computes the same, and so finds a bundle that was not made again.
+function hashOf(folder) {
+  const hash = createHash("sha256");
+  const sources = readdirSync(`${folder}/src`).sort().map((name) => `${folder}/src/${name}`);
+  for (const name of ["build.mjs", "package-lock.json", ...sources]) hash.update(readFileSync(name));
+  return hash.digest("hex");
+}
 
 const licence = (name) => readFileSync(`node_modules/${name}/LICENSE`, "utf8").trim();
 const version = (name) => JSON.parse(readFileSync(`node_modules/${name}/package.json`)).version;
-const bundled = { page: ["uplot"], view: ["three"] };
+const noticesOf = (libraries) =>
+  libraries.map((one) => `${one} ${version(one)}\n\n${licence(one)}`).join("\n\n");
 
-for (const [name, libraries] of Object.entries(bundled)) {
-  const notices = libraries.map((one) => `${one} ${version(one)}\n\n${licence(one)}`).join("\n\n");
+/// three.js is one file, THREE for the scripts beside it.
+const sharedThree = {
+  name: "shared-three",
+  setup(bundle) {
+    bundle.onResolve({ filter: /^three(\/|$)/ }, () => ({ path: "three", namespace: "shared" }));
+    bundle.onLoad({ filter: /^/, namespace: "shared" }, () => ({ contents: "module.exports = THREE;" }));
+  },
+};
+
+async function bundle(folder, name, { libraries = [], ...more } = {}) {
+  const made = `made by src/report/page/build.mjs, sources sha256 ${hashOf(folder)}`;
+  const holds = libraries.length ? `\n\nThis part of the page holds ${noticesOf(libraries)}\n*/` : " */";
   await build({
-    entryPoints: [`src/${name}.js`],
-    outfile: `dist/${name}.js`,
+    entryPoints: [`${folder}/src/${name}.js`],
+    outfile: `${folder}/dist/${name}.js`,
     bundle: true, minify: true, format: "iife", target: "es2020", charset: "ascii",
     legalComments: "none",  // the banner holds the licences whole
     loader: { ".css": "text" },
-    inject: name === "page" ? ["src/pixel_ratio.js"] : [],
-    banner: { js: `/* ${made}\n\nThis part of the page holds ${notices}\n*/` },
+    banner: { js: `/* ${made}${holds}` },
+    ...more,
   });
 }
-const all = Object.values(bundled).flat();
+
+await bundle(".", "page", { libraries: ["uplot"], inject: ["src/pixel_ratio.js"] });
+await bundle(".", "three", { libraries: ["three"], globalName: "THREE" });
+await bundle(".", "view", { plugins: [sharedThree] });
 writeFileSync("dist/LICENSES.txt",
-  all.map((one) => `${one} ${version(one)}\n\n${licence(one)}\n`).join(`\n${"-".repeat(78)}\n\n`));
+  ["uplot", "three"].map((one) => `${one} ${version(one)}\n\n${licence(one)}\n`)
+    .join(`\n${"-".repeat(78)}\n\n`));
+
+mkdirSync(`${LIVE}/dist`, { recursive: true });
+await bundle(LIVE, "viewer", { plugins: [sharedThree] });
+for (const name of ["viewer.html", "viewer.css"]) copyFileSync(`${LIVE}/src/${name}`, `${LIVE}/dist/${name}`);

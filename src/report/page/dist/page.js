@@ -1,4 +1,4 @@
-/* made by src/report/page/build.mjs, sources sha256 8d5139e2d2e4bb75410769b0079a3757a51239ba917cbea9bad0ab232fc6ed08
+/* made by src/report/page/build.mjs, sources sha256 d8308a04c83abf6b743a1eff3876406e2663dedcbc7e343bdd59dd5ead2e6c02
 
 This part of the page holds uplot 1.6.32
 
