@@ -20,6 +20,15 @@ inline const CLI::Validator duration(
     },
     "");
 
+/// Validator of a duration [s] that may be infinite: "inf".
+inline const CLI::Validator duration_or_endless(
+    [](const std::string& text) {
+      double seconds = 0.0;
+      const bool usable = CLI::detail::lexical_cast(text, seconds) && seconds > 0.0;
+      return usable ? std::string{} : fmt::format("{} must be a positive number of seconds, or inf", text);
+    },
+    "");
+
 /// Validator of a positive, finite number.
 inline const CLI::Validator positive(
     [](const std::string& text) {

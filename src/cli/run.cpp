@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 
 #include "cli/missing_outputs.h"
@@ -33,7 +34,9 @@ int run_to_end(const session::Options& options, const scene::Description& descri
                MissingOutputs& missing, session::Resumption* resumption) {
   using session::RunSession;
   RunSession run(options, description, resumption);
-  with_progress("running " + short_name(description), run, &RunSession::simulate);
+  const std::string what =
+      (std::isinf(options.duration_s) ? "running until Ctrl-C: " : "running ") + short_name(description);
+  with_progress(what, run, &RunSession::simulate);
   print_outcome(run.world(), run.output(), options);
   with_progress("computing the reference", run, &RunSession::compare_with_references);
   print_against_references(run.world(), run.output());

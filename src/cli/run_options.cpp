@@ -18,6 +18,7 @@ constexpr const char* kRunExamples = R"(Examples:
   palpate run two-heads --checkpoint-every 0.1 -o out/heads   loses at most 0.1 s if killed
   palpate run falling-ball --trace --report      rejected steps, with reason and location
   palpate run touch-human --realtime             lateness of its ticks on this machine
+  palpate run touch-human --realtime --duration inf       until Ctrl-C, files complete
   palpate run press-ball --against-monolithic    error of its force
   palpate run two-heads --contact-picture        contact regions, depths and proxies
   palpate run press-ball --movie press.png --slow 4       a quarter of the speed; browsers play it
@@ -120,9 +121,11 @@ void add_run(CLI::App& app, Invocation& invocation) {
   add_scene(*command, options->scene, true);
   command->add_option("-o,--output", options->folder, "folder for the results; default out/SCENE")
       ->type_name("DIR");
-  command->add_option("--duration-s", options->duration_s, "simulated time, instead of the scene's [s]")
+  command
+      ->add_option("--duration-s,--duration", options->duration_s,
+                   "simulated time, instead of the scene's [s]; inf with --realtime: until Ctrl-C")
       ->type_name("SECONDS")
-      ->check(duration);
+      ->check(duration_or_endless);
   add_picture_options(*command, *options);
   add_loop_options(*command, *options);
   command->footer(kRunExamples);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/clock.h"
 #include "coupling/carried_bodies.h"
@@ -23,6 +24,12 @@ BodyLoop::BodyLoop(World& world, const RunOptions& options, RunResult& result)
   }
   duration_ = options.duration_s > 0.0 ? options.duration_s : d.duration_s;
   period_ = period_of(d);
+  if (duration_ == std::numeric_limits<double>::infinity()) {
+    endless_ = true;
+    periods_ = std::numeric_limits<int>::max();
+    duration_ = periods_ * period_;
+    return;
+  }
   if (!(duration_ / period_ < 1e9))
     fail(
         "duration_s = {} is {:.3g} exchange periods of {} s, more than the limit of 1e9; choose a shorter "

@@ -21,8 +21,9 @@ class BodyLoop {
   BodyLoop(World& world, const RunOptions& options, RunResult& result);
 
   /// Duration of the run, length and number of its periods [s]. The constructor throws Error for too many
-  /// periods.
+  /// periods. A run without an end has as many periods as an int can count: 24 days at 1 kHz.
   double duration() const { return duration_; }
+  bool is_endless() const { return endless_; }
   double period() const { return period_; }
   int periods() const { return periods_; }
   double period_start(int i) const { return i == periods_ ? duration_ : i * period_; }
@@ -77,6 +78,7 @@ class BodyLoop {
   const RunOptions& options_;
   RunResult& result_;
   double duration_ = 0.0, period_ = 0.0;
+  bool endless_ = false;
   int periods_ = 0;
   double changed_ = 0.0;                      ///< Time of the last material change [s].
   dynamics::StepperCounters counted_before_;  ///< By steppers of Worlds before the last checkpoint.

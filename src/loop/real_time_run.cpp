@@ -17,6 +17,7 @@
 #include "palpate/device/limiter.h"
 #include "real_time_thread.h"
 #include "tick_group.h"
+#include "timing_series.h"
 
 namespace palpate::loop {
 namespace {
@@ -57,6 +58,10 @@ struct TimedTick {
 
 float seconds(std::int64_t ns) { return static_cast<float>(1e-9 * static_cast<double>(ns)); }
 
+std::size_t capacity_of(const BodyLoop& bodies, long count) {
+  return bodies.is_endless() ? TimingSeries::kEndless : static_cast<std::size_t>(count);
+}
+
 class RealTime {
  public:
   RealTime(World& world, BodyLoop& bodies, const RunOptions& options, RunResult& result)
@@ -69,6 +74,9 @@ class RealTime {
         tick_s_(bodies.period() / per_period_),
         tick_ns_(std::llround(1e9 * tick_s_)),
         count_(static_cast<long>(per_period_) * bodies.periods()),
+        lateness_(out_.lateness_s, out_.timed_ticks, capacity_of(bodies, count_)),
+        work_(out_.work_s, work_count_, capacity_of(bodies, count_)),
+        latency_(out_.latency_s, out_.timed_exchanges, capacity_of(bodies, bodies.periods())),
         queue_(kQueue) {
     for (ToolInstance& tool : world.tools) hands_.emplace_back(world.description, tool);
     groups_ = TickGroup::all(hands_);
@@ -79,8 +87,6 @@ class RealTime {
     out_.tick_s = tick_s_;
     out_.period_s = bodies.period();
     out_.stall_s = device::kFallTime;
-    out_.lateness_s.reserve(static_cast<std::size_t>(count_));
-    out_.work_s.reserve(static_cast<std::size_t>(count_));
   }
 
   /// Restores the stepper's interrupt flag, as the stepper outlives the run.
@@ -118,6 +124,7 @@ class RealTime {
     thread.join();
     stop_requested();
     drain(ticked_.load());
+    for (TimingSeries* series : {&lateness_, &work_, &latency_}) series->close();
     if (failure_) std::rethrow_exception(failure_);
     if (result_.status.ok()) result_.status = tick_status_;
     out_.unrecorded_ticks = unrecorded_.load();
@@ -153,12 +160,13 @@ class RealTime {
     TimedTick timed;
     std::int64_t woke_before = start_ns_;
     for (long i = 1; i <= count_ && !quit_.load(std::memory_order_relaxed); ++i) {
+      const bool paused = hold_while_paused();
       sleep_until_ns(start_ns_ + i * tick_ns_);
       if (options_.stop && options_.stop->load(std::memory_order_relaxed)) return;
       const std::int64_t woke = now_ns(), late = woke - start_ns_ - i * tick_ns_;
       const long left_out = late > kStall ? late / tick_ns_ : 0;
       start_ns_ += left_out * tick_ns_;
-      const bool ramps_in = woke - std::exchange(woke_before, woke) > tick_ns_ + kStall;
+      const bool ramps_in = woke - std::exchange(woke_before, woke) > tick_ns_ + kStall || paused;
       const double t = static_cast<double>(i) * tick_s_;
       timed.number = i;
       timed.lateness_s = seconds(late);
@@ -179,6 +187,17 @@ class RealTime {
     }
   }
 
+  /// Waits while the run is paused, with no force on the devices; the clock then starts anew from here.
+  /// Returns whether it waited.
+  bool hold_while_paused() {
+    if (!options_.pause || !options_.pause->load(std::memory_order_relaxed)) return false;
+    for (Hand& hand : hands_) hand.haptic_loop.end();
+    start_ns_ += wait_for_the_end_of_a_pause(*options_.pause, [this] {
+      return quit_.load(std::memory_order_relaxed) || (options_.stop && options_.stop->load());
+    });
+    return true;
+  }
+
   // --- Thread of the bodies
 
   /// Makes one exchange: waits for the ticks of a period, follows them, and publishes. Returns false at the
@@ -192,7 +211,8 @@ class RealTime {
       if (over) return false;
       over = over_.load(std::memory_order_acquire);
       if (stop_requested()) return false;
-      sleep_until_ns(now_ns() + 20'000);
+      const bool paused = options_.pause && options_.pause->load(std::memory_order_relaxed);
+      sleep_until_ns(now_ns() + (paused ? 2'000'000 : 20'000));
     }
     if (interrupt_.load()) {
       if (!stop_requested()) give_up_steps(done_);
@@ -211,7 +231,7 @@ class RealTime {
     if (bodies_.ended()) return false;
     bodies_.query();
     publish();
-    out_.latency_s.push_back(seconds(now_ns() - start_ns_ - done_ * tick_ns_));
+    latency_.add(seconds(now_ns() - start_ns_ - done_ * tick_ns_));
     bodies_.close_period(time_of(done_));
     return true;
   }
@@ -265,8 +285,10 @@ class RealTime {
       bodies_.follow(timed.hand, timed.record.time, timed.record.tool, timed.record.tool_twist);
       bodies_.record_tick(timed.hand, timed.record);
       if (timed.hand + 1 < hands_.size()) continue;
-      out_.lateness_s.push_back(timed.lateness_s);
-      out_.work_s.push_back(timed.work_s);
+      lateness_.add(timed.lateness_s);
+      work_.add(timed.work_s);
+      for (Observer* observer : options_.observers)
+        observer->timed({timed.lateness_s, timed.work_s, 0, timed.record.left_out});
       out_.missed_ticks += timed.lateness_s >= static_cast<float>(tick_s_);
       out_.left_out_ticks += timed.record.left_out;
       out_.stalls += timed.record.ramps_in;
@@ -291,8 +313,9 @@ class RealTime {
   double tick_s_;
   std::int64_t tick_ns_;
   std::atomic<std::int64_t> start_ns_{0};  ///< Start of the clock: changed by the tick thread.
-  long count_, done_ = 0, drained_ = 0;
+  long count_, done_ = 0, drained_ = 0, work_count_ = 0;
 
+  TimingSeries lateness_, work_, latency_;  ///< Series of `out_`.
   SpscRing<TimedTick> queue_;
   dynamics::StepResult tick_status_;  ///< Status in the tick thread; read after its end.
   std::atomic<long> ticked_{0}, unrecorded_{0};

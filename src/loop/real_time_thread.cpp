@@ -72,6 +72,12 @@ void sleep_until_ns(std::int64_t due) {
   while (clock_nanosleep(kClock, TIMER_ABSTIME, &t, nullptr) == EINTR) {}
 }
 
+std::int64_t wait_for_the_end_of_a_pause(const std::atomic<bool>& pause, const std::function<bool()>& ended) {
+  const std::int64_t start = now_ns();
+  while (pause.load(std::memory_order_relaxed) && !ended()) sleep_until_ns(now_ns() + 1'000'000);
+  return now_ns() - start;
+}
+
 void claim_real_time(RealTimeResult& out) {
   touch_stack();
   pin(out);

@@ -1,7 +1,9 @@
 #pragma once
 #include <sched.h>
 
+#include <atomic>
 #include <cstdint>
+#include <functional>
 
 #include "palpate/loop/real_time.h"
 
@@ -11,6 +13,9 @@ namespace palpate::loop {
 std::int64_t now_ns();
 /// Sleeps until that clock reaches `due` [ns]; returns at once if it already has.
 void sleep_until_ns(std::int64_t due);
+
+/// Waits until `pause` is false or `ended` returns true. Returns the time waited [ns].
+std::int64_t wait_for_the_end_of_a_pause(const std::atomic<bool>& pause, const std::function<bool()>& ended);
 
 /// Prepares the calling thread for a servo loop, as far as the system permits: SCHED_FIFO, pinned to the last
 /// processor that this process may use (the first serves most interrupts), memory locked, stack touched.

@@ -1,7 +1,10 @@
 #include "palpate/loop/run.h"
 
+#include <cmath>
+
 #include "body_loop.h"
 #include "core/clock.h"
+#include "palpate/core/error.h"
 #include "palpate/core/workers.h"
 #include "real_time_run.h"
 #include "single_rate_real_time.h"
@@ -10,6 +13,8 @@
 namespace palpate::loop {
 
 RunResult run(World& world, const RunOptions& options) {
+  if (!options.real_time && std::isinf(options.duration_s))
+    fail("duration_s = inf: a run without an end needs the wall clock; run in real time (--realtime)");
   const workers::Count threads(world.description.integrator.threads);
   RunResult result;
   BodyLoop bodies(world, options, result);

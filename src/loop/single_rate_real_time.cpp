@@ -10,6 +10,7 @@
 #include "real_time_run.h"
 #include "real_time_thread.h"
 #include "single_rate.h"
+#include "timing_series.h"
 
 namespace palpate::loop {
 namespace {
@@ -44,11 +45,13 @@ class SingleRateRealTime {
         ticks_(world, bodies, result, pointers_to(loops_)),
         tick_s_(bodies.period() / ticks_.ticks_per_period()),
         tick_ns_(std::llround(1e9 * tick_s_)),
-        count_(ticks_.count()) {
+        count_(ticks_.count()),
+        capacity_(bodies.is_endless() ? TimingSeries::kEndless : static_cast<std::size_t>(count_)),
+        lateness_(out_.lateness_s, out_.timed_ticks, capacity_),
+        work_(out_.work_s, work_count_, capacity_),
+        latency_(out_.latency_s, out_.timed_exchanges, capacity_) {
     out_.tick_s = out_.period_s = tick_s_;
     out_.stall_s = device::kFallTime;
-    for (std::vector<float>* series : {&out_.lateness_s, &out_.work_s, &out_.latency_s})
-      series->reserve(static_cast<std::size_t>(count_));
   }
 
   void run() {
@@ -63,6 +66,7 @@ class SingleRateRealTime {
     start_ns_ = now_ns() + kLead;
     tick_by_the_clock();
     for (HapticLoop& loop : loops_) loop.end();
+    for (TimingSeries* series : {&lateness_, &work_, &latency_}) series->close();
   }
 
  private:
@@ -81,6 +85,7 @@ class SingleRateRealTime {
     std::int64_t woke_before = start_ns_;
     for (long done = 0; done < count_;) {
       const long next = done + 1;
+      const bool paused = hold_while_paused();
       sleep_until_ns(start_ns_ + next * tick_ns_);
       result_.stopped = options_.stop && options_.stop->load(std::memory_order_relaxed);
       if (result_.stopped) return;
@@ -89,7 +94,7 @@ class SingleRateRealTime {
       const long left_out = late > kStall ? behind : 0;  // the clock is restarted
       start_ns_ += left_out * tick_ns_;
       const long skipped = left_out > 0 ? 0 : std::min(behind, count_ - next);
-      ticks_.mark(woke - std::exchange(woke_before, woke) > tick_ns_ + kStall, left_out);
+      ticks_.mark(woke - std::exchange(woke_before, woke) > tick_ns_ + kStall || paused, left_out);
       ticks_.tick(ticks_.time_of(done), ticks_.time_of(next + skipped));
       if (bodies_.ended()) return;
       note(late, left_out, skipped, now_ns() - woke);
@@ -102,10 +107,23 @@ class SingleRateRealTime {
     }
   }
 
+  /// Waits while the run is paused, with no force on the devices; the clock then starts anew from here.
+  /// Returns whether it waited.
+  bool hold_while_paused() {
+    if (!options_.pause || !options_.pause->load(std::memory_order_relaxed)) return false;
+    for (HapticLoop& loop : loops_) loop.end();
+    start_ns_ += wait_for_the_end_of_a_pause(*options_.pause,
+                                             [this] { return options_.stop && options_.stop->load(); });
+    return true;
+  }
+
   void note(std::int64_t late, long left_out, long skipped, std::int64_t work) {
-    out_.lateness_s.push_back(seconds(late));
-    out_.work_s.push_back(seconds(work));
-    out_.latency_s.push_back(seconds(late - left_out * tick_ns_ + work));
+    lateness_.add(seconds(late));
+    work_.add(seconds(work));
+    latency_.add(seconds(late - left_out * tick_ns_ + work));
+    for (Observer* observer : options_.observers)
+      observer->timed({seconds(late), seconds(work), static_cast<std::uint32_t>(skipped),
+                       static_cast<std::uint32_t>(left_out)});
     out_.missed_ticks += late >= tick_ns_;
     out_.left_out_ticks += left_out;
     out_.skipped_ticks += skipped;
@@ -121,7 +139,9 @@ class SingleRateRealTime {
   SingleRate ticks_;
   double tick_s_;
   std::int64_t tick_ns_, start_ns_ = 0;
-  long count_;
+  long count_, work_count_ = 0;
+  std::size_t capacity_;
+  TimingSeries lateness_, work_, latency_;  ///< Series of `out_`.
 };
 
 }  // namespace

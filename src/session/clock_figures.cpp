@@ -16,7 +16,7 @@ std::vector<std::string> clock_remarks(const loop::RunResult& result, const std:
     out.push_back(fmt::format(format, std::forward<Args>(args)...));
   };
   add("real time: {} of {} ticks late by a tick or more; bodies and contact at {:.1f} Hz (target {:g} Hz)",
-      clock.missed_ticks, clock.lateness_s.size(), clock.exchanges_per_s(), 1.0 / clock.period_s);
+      clock.missed_ticks, clock.timed_ticks, clock.exchanges_per_s(), 1.0 / clock.period_s);
   if (clock.skipped_ticks > 0)
     add("real time: {} ticks were skipped, because a step took longer than a tick; the next step covered "
         "them",
@@ -29,7 +29,7 @@ std::vector<std::string> clock_remarks(const loop::RunResult& result, const std:
     add("real time: no wrench was sent for more than {:g} ms, {} times; each time the force was ramped in "
         "again",
         1e3 * clock.stall_s, clock.stalls);
-  if (const double exchanges = static_cast<double>(clock.latency_s.size()); exchanges > 0.0) {
+  if (const double exchanges = static_cast<double>(clock.timed_exchanges); exchanges > 0.0) {
     const dynamics::StepperCounters& c = result.counters;
     const double step = c.force_s + c.tangent_s + c.solver.symbolic_s + c.solver.factor_s + c.solver.solve_s,
                  query = result.query_s, linearise = result.linearise_s;
@@ -60,8 +60,9 @@ std::vector<std::string> clock_remarks(const loop::RunResult& result, const std:
 void write_clock(const loop::RealTimeResult& clock, const std::string& folder) {
   store::CsvWriter file((std::filesystem::path(folder) / "clock.csv").string(),
                         {"time_s", "late_us", "work_us"});
+  const double first = static_cast<double>(clock.timed_ticks) - static_cast<double>(clock.lateness_s.size());
   for (std::size_t i = 0; i < clock.lateness_s.size(); ++i)
-    file.row(std::array{static_cast<double>(i + 1) * clock.tick_s,
+    file.row(std::array{(first + static_cast<double>(i + 1)) * clock.tick_s,
                         1e6 * static_cast<double>(clock.lateness_s[i]),
                         1e6 * static_cast<double>(clock.work_s[i])});
   file.close();

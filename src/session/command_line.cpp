@@ -15,6 +15,7 @@ std::string quoted(const std::string& word) {
 }
 
 std::string command_of(const Options& a) {
+  if (!a.command.empty()) return a.command;
   std::string out = "palpate run " + quoted(a.scene.scene.empty() ? "scene.toml" : a.scene.scene);
   for (const std::string& change : a.scene.overrides) out += " --set " + quoted(change);
   if (!a.scene.integrator.empty()) out += " --integrator " + quoted(a.scene.integrator);

@@ -9,7 +9,9 @@ namespace palpate::session {
 struct Options {
   scene::SceneArguments scene;  ///< Kept in summary.json and in checkpoints
   std::string folder;           ///< Output folder; empty: out/NAME, and only if there is a file to write
-  double duration_s = 0.0;      ///< Simulated time [s]; 0: the duration of the scene
+  /// Simulated time [s]; 0: the duration of the scene; infinity: until the run is stopped
+  double duration_s = 0.0;
+  std::string command;  ///< Command line for the summary; empty: made of these options
   bool picture = false, report = false, trace = false, real_time = false;
   bool contact_picture = false, frames = false;
   double frames_per_s = 0.0;           ///< Frames per second of simulated time; 0: as the scene records

@@ -1,5 +1,7 @@
 #include "session/run_session.h"
 
+#include <cmath>
+
 #include "core/clock.h"
 #include "core/counters.h"
 #include "core/time_text.h"
@@ -35,12 +37,29 @@ scene::Description RunSession::chosen(const scene::Description& description) {
   return loop::with_scheme(description, choice.scheme);
 }
 
-RunSession::RunSession(const Options& options, const scene::Description& description, Resumption* resumption)
+namespace {
+
+/// Checks the options of a run without an end.
+void check_endless(const Options& o) {
+  if (!std::isinf(o.duration_s)) return;
+  if (!o.real_time) fail("--duration-s inf: a run without an end needs the wall clock; add --realtime");
+  if (o.against_monolithic)
+    fail("--duration-s inf: --against-monolithic keeps every tick in memory; give a finite duration");
+  if (o.checkpoint_every_s > 0.0)
+    fail("--duration-s inf: a run in real time has no checkpoints; omit --checkpoint-every");
+}
+
+}  // namespace
+
+RunSession::RunSession(const Options& options, const scene::Description& description, Resumption* resumption,
+                       RunAttachments attachments)
     : options_(options),
       description_(with_record(chosen(description), options)),
       resumption_(resumption),
+      attachments_(std::move(attachments)),
       has_checkpoints_(options.checkpoint_every_s > 0.0 || resumption),
       passivity_(device::PassivityController::mode_of(options.passivity)) {
+  check_endless(options_);
   const PictureOptions pictures = check_pictures(options_, description_);
   if (has_checkpoints_) check_checkpoints(options_, description_);
   if (options_.against_monolithic) compare::refuse_against_monolithic(description_);
@@ -52,7 +71,7 @@ RunSession::RunSession(const Options& options, const scene::Description& descrip
 void RunSession::assemble() {
   const double start = wall_seconds();
   counters::reset();
-  world_ = loop::assemble(description_);
+  world_ = attachments_.assemble ? attachments_.assemble(description_) : loop::assemble(description_);
   ran_.assemble_s = wall_seconds() - start;
   if (has_checkpoints_) prepare_checkpoints();
   loop::check_clock(*world_, options_.real_time);
@@ -105,6 +124,7 @@ void RunSession::attach_observers(const PictureOptions& pictures) {
   }
   if (options_.trace) trace_.emplace(*world_, path("trace.csv"));
   if (options_.against_monolithic) observers_.push_back(&memory_);
+  observers_.insert(observers_.end(), attachments_.observers.begin(), attachments_.observers.end());
 }
 
 void RunSession::simulate(const Callbacks& callbacks) {
@@ -115,6 +135,7 @@ void RunSession::simulate(const Callbacks& callbacks) {
   options.observers = observers_;
   options.progress = callbacks.progress;
   options.stop = callbacks.stop;
+  options.pause = attachments_.pause;
   options.waiting = callbacks.waiting;
   try {
     ran_.result = has_checkpoints_

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +21,14 @@
 
 namespace palpate::session {
 
+/// Parts of a run that its caller owns, in addition to those of the scene.
+struct RunAttachments {
+  /// Assembles the scene, for example with other devices; empty: loop::assemble().
+  std::function<std::unique_ptr<loop::World>(const scene::Description& description)> assemble;
+  std::vector<loop::Observer*> observers;    ///< Called after those of the session; they outlive it.
+  const std::atomic<bool>* pause = nullptr;  ///< As loop::RunOptions::pause
+};
+
 /// One run of a scene: its World, its observers, and the files that it writes. It prints nothing. The steps
 /// of a run are separate functions, so that a caller can report after each; run() calls all of them. Counters
 /// of constructions and kept warnings are those of the process: a process has one session at a time.
@@ -32,7 +41,9 @@ class RunSession {
   /// @throws Error for options that do not suit the scene or each other, for a scene that cannot be
   /// assembled, and for a folder that cannot be written, is locked by another process or contains an input of
   /// the run
-  RunSession(const Options& options, const scene::Description& description, Resumption* resumption = nullptr);
+  /// @param attachments  devices and observers of the caller
+  RunSession(const Options& options, const scene::Description& description, Resumption* resumption = nullptr,
+             RunAttachments attachments = {});
   RunSession(const RunSession&) = delete;
   RunSession& operator=(const RunSession&) = delete;
 
@@ -51,6 +62,7 @@ class RunSession {
   void run(const Callbacks& callbacks = {});
 
   const loop::World& world() const { return *world_; }
+  loop::World& world() { return *world_; }
   const RunOutput& output() const { return ran_; }
   /// Returns the summary of the run so far, the content of summary.json.
   store::Summary summary() const;
@@ -72,6 +84,7 @@ class RunSession {
   const Options options_;
   const scene::Description description_;
   Resumption* resumption_;
+  RunAttachments attachments_;
   bool has_checkpoints_;
   device::PassivityController::Mode passivity_;
   std::unique_ptr<loop::World> world_;

@@ -31,6 +31,14 @@ struct TickRecord {
   std::uint64_t record_version = 0;  ///< Version of the contact record used by this tick; 0: none.
 };
 
+/// Timing of one tick of a run in real time, equal for all hands.
+struct TickTiming {
+  float lateness_s = 0.0F;     ///< From the due time of the tick to the wake-up of its thread [s].
+  float work_s = 0.0F;         ///< From the wake-up to the wrench on the last device [s].
+  std::uint32_t skipped = 0;   ///< Ticks that this one covers in addition (single-rate scheme).
+  std::uint32_t left_out = 0;  ///< Clock ticks omitted before this one.
+};
+
 /// Observer of a run, called by the loop; recorders and measurements implement it.
 class Observer {
  public:
@@ -44,6 +52,8 @@ class Observer {
   virtual void tick_of(std::size_t hand, const TickRecord& tick_record) {
     if (hand == 0) tick(tick_record);
   }
+  /// Called after the ticks of all hands with the same time, in real time only.
+  virtual void timed(const TickTiming&) {}
   /// Called for each contact record made for the next ticks of the first hand.
   virtual void exchanged(const ContactRecord&) {}
   /// Called for each contact record of any hand. Not overridden, it forwards the records of the first hand.

@@ -14,7 +14,8 @@ struct World;
 
 /// Options of a run; defaults are the scene's values, or none.
 struct RunOptions {
-  double duration_s = 0.0;  ///< 0: the scene's
+  /// Simulated time [s]; 0: the scene's; infinity: until `stop` is set.
+  double duration_s = 0.0;
   /// Ticks by the wall clock in a separate thread; otherwise in virtual time.
   bool real_time = false;
   /// Whether the energy at the device's port is observed, or also controlled.
@@ -22,6 +23,9 @@ struct RunOptions {
   std::vector<Observer*> observers;               ///< Called in this order; they must outlive the run.
   std::function<void(double fraction)> progress;  ///< Called after every period.
   const std::atomic<bool>* stop = nullptr;        ///< Set from outside: the run ends after the current step.
+  /// While it is set from outside, a run in real time holds: devices get no force, and simulated time does
+  /// not advance.
+  const std::atomic<bool>* pause = nullptr;
   /// Called with a description of the event if the run has to wait for a device.
   std::function<void(const std::string& awaited)> waiting;
 };
