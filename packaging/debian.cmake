@@ -95,8 +95,8 @@ and every error has its price in run time.
 .
 ")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${about}\
-This package has the programs palpate, palpate-model and palpate-validation,
-their shared libraries and the scenes that come with them.")
+This package has the programs palpate, palpate-model, palpate-touch and
+palpate-validation, their shared libraries and the scenes that come with them.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME palpate)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)

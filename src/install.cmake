@@ -31,7 +31,7 @@ install(TARGETS ${exported} EXPORT palpateTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT program NAMELINK_COMPONENT library
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
 add_custom_target(installable DEPENDS ${exported})  # all that `cmake --install` wants built
-foreach(program palpate palpate-model)
+foreach(program palpate palpate-model palpate-touch)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
     add_dependencies(installable ${program})

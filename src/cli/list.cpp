@@ -40,14 +40,6 @@ loop::ChoiceList case_choices(const std::string& requested) {
   return out;
 }
 
-/// Returns the first comment line of a scene file, its description.
-std::string first_comment(const std::string& path) {
-  const std::string text = read_text(path);
-  const std::size_t begin = text.find_first_not_of("# \t\r\n");
-  if (text.empty() || text[0] != '#' || begin == std::string::npos) return "";
-  return text.substr(begin, text.find('\n', begin) - begin);
-}
-
 loop::ChoiceList scene_choices() {
   loop::ChoiceList out{"scenes", "that come with palpate: palpate run NAME", {}};
   for (const std::string& path : shipped_scenes())

@@ -49,7 +49,7 @@ std::string read_all(int from) {
 }  // namespace
 
 const OtherProgram* find_other_program(std::string_view command) {
-  for (const OtherProgram* other : {&kModel, &kBench, &kValidate})
+  for (const OtherProgram* other : {&kModel, &kTouch, &kBench, &kValidate})
     if (other->command == command) return other;
   return nullptr;
 }

@@ -20,6 +20,11 @@ inline constexpr OtherProgram kModel = {
     "this build makes no models; configure with -DPALPATE_WITH_MODEL=ON (packages libcgal-dev, "
     "libgmsh-dev) and build the target palpate-model",
     false};
+/// Server of the page of a scene, in a separate program: palpate does not load libwebsockets.
+inline constexpr OtherProgram kTouch = {
+    "touch", "touch a scene in a browser, in real time", "palpate-touch",
+    "this build has no server; configure with -DPALPATE_WITH_LIVE=ON (package libwebsockets-dev) and build "
+    "the target palpate-touch"};
 inline constexpr OtherProgram kBench = {
     "bench", "benchmarks on this machine", "palpate-bench",
     "the packages do not include it; `./palpate bench` in a clone of the sources builds it"};

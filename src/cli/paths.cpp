@@ -48,4 +48,11 @@ std::string read_text(const std::string& path) {
   return text.str();
 }
 
+std::string first_comment(const std::string& path) {
+  const std::string text = read_text(path);
+  const std::size_t begin = text.find_first_not_of("# \t\r\n");
+  if (text.empty() || text[0] != '#' || begin == std::string::npos) return "";
+  return text.substr(begin, text.find('\n', begin) - begin);
+}
+
 }  // namespace palpate::cli

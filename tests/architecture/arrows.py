@@ -41,6 +41,9 @@ ALLOWED = {
     "haptic_stability": ["core", "mesh", "device", "tool", "scene", "loop"],
     "report": ["core", "mesh", "store"],
     "session": ["core", "scene", "store", "render", "loop", "experiments", "report"],
+    "live": ["core", "mesh", "contact", "device", "scene", "loop", "session", "report", "store"],
+    # src/cli/touch_program: the program behind `palpate touch`
+    "touch_program": ["core", "scene", "live", "cli"],
     "cli": ["core", "shapes", "scene", "store", "render", "loop", "experiments", "haptic_stability", "report",
             "session"],
     "python": BELOW_LOOP + ["loop", "experiments", "session", "validation"],  # of `import palpate`
@@ -79,6 +82,7 @@ OUTSIDE = [
     ("SuiteSparse", r"(suitesparse/)?(cholmod|umfpack|klu|amd|SuiteSparse)\w*\.h", ["src/linear"]),
     ("Spectra", r"Spectra/", ["src/modes"]),
     ("CLI11", r"CLI/", ["src/cli", "benchmarks/product/program", "validation/program"]),
+    ("libwebsockets", r"libwebsockets", ["src/live"]),
     ("pybind11", r"pybind11/", ["src/python"]),
     ("toml++", r"toml\+\+/", ["src/scene"]),
     ("SQLite", r"sqlite3\.h", ["src/store"]),
@@ -118,8 +122,8 @@ def part_of(path):
         part = pieces[1]
     else:
         return None
-    if part == "cli" and pieces[2] == "model_program":
-        return "model_program"
+    if part == "cli" and pieces[2] in ("model_program", "touch_program"):
+        return pieces[2]
     return part
 
 
@@ -195,7 +199,7 @@ def unit_of(path):
     part, pieces = part_of(path), path.split("/")
     folder = next((folder for folder in ELSEWHERE if path.startswith(folder)), None)
     if folder is None:
-        folder = "/".join(pieces[:3 if path.startswith(PROMISED) or part == "model_program" else 2]) + "/"
+        folder = "/".join(pieces[:3 if path.startswith(PROMISED) or part in ("model_program", "touch_program") else 2]) + "/"
     return part, path[len(folder):].rsplit(".", 1)[0].removesuffix("_impl")
 
 

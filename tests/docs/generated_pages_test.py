@@ -48,18 +48,20 @@ def commands():
     return re.findall(r"^  (\S+)", block, re.M)
 
 
-def model_section():
-    """Section of the program palpate-model, which not every build has: otherwise the page's existing one."""
-    text = said("model", "--help")
+def optional_section(name):
+    """Section of a program that not every build has (palpate-model, palpate-touch): otherwise the page's
+    existing one."""
+    text = said(name, "--help")
     if text is None:
-        print("remark: this build has no palpate-model, its section is not compared")
+        print(f"remark: this build has no palpate-{name}, its section is not compared")
         page = (DOCS / "commands.md").read_text()
-        return re.search(r"\n## palpate model\n.*?^```$\n", page, re.M | re.S).group()
-    return section("palpate model", text)
+        return re.search(rf"\n## palpate {name}\n.*?^```$\n", page, re.M | re.S).group()
+    return section(f"palpate {name}", text)
 
 
 def commands_page():
-    sections = [model_section() if name == "model" else section(f"palpate {name}", said(name, "--help"))
+    sections = [optional_section(name) if name in ("model", "touch") else
+                section(f"palpate {name}", said(name, "--help"))
                 for name in commands()]
     return INTRODUCTION + section("palpate", said("--help")) + "".join(sections)
 

@@ -1,0 +1,32 @@
+#include "live/live_scene.h"
+
+#include <utility>
+
+#include "live/scene_messages.h"
+#include "palpate/scene/hands.h"
+
+namespace palpate::live {
+
+std::size_t frame_values(const loop::World& world) {
+  const std::size_t hands = scene::hands_of(world.description).size();
+  std::size_t out = 7 * (hands + world.bones.size()) + 14 * hands;
+  for (const loop::Body& body : world.bodies) out += 3 * static_cast<std::size_t>(body.placed.cols());
+  return out;
+}
+
+LiveScene::LiveScene(const loop::World& world, const std::string& name_in, std::vector<Slider> sliders_in,
+                     std::shared_ptr<HandleMailbox> mailbox)
+    : name(name_in),
+      sliders(std::move(sliders_in)),
+      hands(scene::hands_of(world.description).size()),
+      has_hand(hands > 0),
+      frames(frame_values(world)),
+      strip(hands),
+      handle(std::move(mailbox)),
+      moduli(world.bodies.size()) {
+  const std::vector<SceneSurface> obstacles = obstacle_surfaces(world);
+  description = scene_message(world, name, sliders, obstacles);
+  geometry = geometry_message(world, obstacles);
+}
+
+}  // namespace palpate::live

@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "live/byte_writer.h"
+#include "live/sliders.h"
+#include "palpate/loop/world.h"
+
+/// Messages that describe a scene to its viewers (docs/live.md).
+namespace palpate::live {
+
+/// Rigid surface of a scene.
+struct SceneSurface {
+  std::string name;
+  TriMesh surface;
+  bool is_bounded = true;
+};
+
+/// Returns the obstacles of a scene in world axes, unbounded ones cut to the neighbourhood of the bodies.
+std::vector<SceneSurface> obstacle_surfaces(const loop::World& world);
+
+/// Returns the message `scene`.
+/// @param name  name by which it was opened
+std::string scene_message(const loop::World& world, const std::string& name,
+                          const std::vector<Slider>& sliders, const std::vector<SceneSurface>& obstacles);
+
+/// Returns the message `geometry`.
+Bytes geometry_message(const loop::World& world, const std::vector<SceneSurface>& obstacles);
+
+}  // namespace palpate::live
