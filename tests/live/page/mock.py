@@ -223,7 +223,7 @@ class Mock:
             if not message["on"] and self.recording:
                 self.tell({"type": "recorded", "folder": self.recording["folder"], "duration_s": 1.0,
                            "replay": f"palpate replay {self.recording['folder']}"})
-            self.recording = {"folder": "out/ball", "since_s": self.now()} if message["on"] else None
+            self.recording = {"folder": "out/ball", "since_s": 0.0} if message["on"] else None
         elif kind == "set":
             self.scene.stiffness = message["value"]
         elif kind == "reset":

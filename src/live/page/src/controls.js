@@ -1,5 +1,5 @@
 // Buttons and sliders.
-import { short } from "./numbers.js";
+import { short, withUnit } from "./numbers.js";
 import { element, notice } from "./panel.js";
 
 /// Positions of a slider.
@@ -17,7 +17,7 @@ function makeSlider(about, send) {
   Object.assign(input, { type: "range", min: 0, max: STEPS, step: 1 });
   input.setAttribute("aria-label", about.label);
   const say = (value) => {
-    output.textContent = `${short(value)} ${about.unit}`;
+    output.textContent = withUnit(value, about.unit);
     input.setAttribute("aria-valuetext", output.textContent);
   };
   const chosen = () => Number(toValue(about, input.value / STEPS).toPrecision(3));
@@ -66,7 +66,7 @@ export class Controls {
     for (const input of element("sliders").querySelectorAll("input")) input.disabled = !mine;
   }
 
-  show({ running, recording, time_s }) {
+  show({ running, recording }) {
     this.running = running;
     this.recording = Boolean(recording);
     element("pause").textContent = running ? "Pause" : "Continue";
@@ -76,8 +76,7 @@ export class Controls {
     const line = element("recording");
     if (recording) {
       line.hidden = false;
-      const since = Math.max(0, time_s - recording.since_s);
-      line.textContent = `Recording into ${recording.folder}, ${since.toFixed(0)} s`;
+      line.textContent = `Recording into ${recording.folder}, ${recording.since_s.toFixed(0)} s`;
     }
   }
 

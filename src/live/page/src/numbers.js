@@ -19,18 +19,17 @@ export function short(value, digits = 3) {
   return String(Number(value.toPrecision(digits)));
 }
 
-const PREFIXES = [[1, ""], [1e-3, "m"], [1e-6, "\u00b5"], [1e-9, "n"]];
+const PREFIXES = [[1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "\u00b5"], [1e-9, "n"]];
 
 /// The prefix in which numbers up to `most` are readable: {scale, unit}; value / scale is in that unit.
 export function unitFor(most, unit) {
-  const [scale, prefix] = PREFIXES.find(([one]) => most >= one * 0.9999) ||
-    (most > 0 ? PREFIXES[PREFIXES.length - 1] : PREFIXES[0]);
+  const [scale, prefix] = PREFIXES.find(([one]) => most >= one * 0.9999) || [1, ""];
   return { scale, unit: prefix + unit };
 }
 
-/// "1.23 mJ"
+/// "1.23 mJ"; numbers below a thousandth of the least prefix are zero.
 export function withUnit(value, unit, digits = 3) {
   if (!Number.isFinite(value)) return "-";
   const shown = unitFor(Math.abs(value), unit);
-  return `${short(value / shown.scale, digits)} ${shown.unit}`;
+  return `${short(Math.abs(value) < 1e-9 ? 0 : value / shown.scale, digits)} ${shown.unit}`;
 }

@@ -19,12 +19,25 @@ function showRate({ running, rate_hz }, tick_s) {
   else light("light-rate", share > 0.8 ? "warn" : "bad", `slower than real time: ${percent} of it`);
 }
 
-function showLateness({ running, late_share, skipped_ticks }) {
-  const skipped = skipped_ticks > 0 ? `, ${skipped_ticks} skipped` : "";
-  const late = `${short(100 * late_share, 2)} % of the ticks late`;
+/// Skipped ticks are shown for so long [s].
+const SKIPS_SHOWN_S = 10;
+let skips = [];
+
+/// Ticks skipped in the last seconds; the server counts them from the start of the scene.
+function recentSkips({ time_s, skipped_ticks }) {
+  if (skips.length > 0 && time_s < skips.at(-1).time_s) skips = [];
+  skips.push({ time_s, skipped_ticks });
+  while (skips[0].time_s < time_s - SKIPS_SHOWN_S) skips.shift();
+  return skipped_ticks - skips[0].skipped_ticks;
+}
+
+function showLateness(state) {
+  const { running, late_share } = state, recent = recentSkips(state);
+  const skipped = recent > 0 ? `, ${recent} skipped in ${SKIPS_SHOWN_S} s` : "";
   if (!running) light("light-late", "", "no ticks while paused");
-  else if (late_share <= FEW_LATE && !skipped) light("light-late", "good", "ticks on time");
-  else light("light-late", late_share <= 0.1 ? "warn" : "bad", late + skipped);
+  else if (late_share <= FEW_LATE && recent === 0) light("light-late", "good", "ticks on time");
+  else light("light-late", late_share <= 0.1 ? "warn" : "bad",
+    `${short(100 * late_share, 2)} % of the ticks late${skipped}`);
 }
 
 /// Energies below this are rounding errors of either sum [J].
@@ -38,12 +51,13 @@ function showPassivity({ passivity }) {
   else light("light-passivity", "bad", `active: the hand got ${withUnit(-least, "J")} more than it put in`);
 }
 
-/// Both energies when the scene began, and since when the bodies have had more than the hand put in [s].
+/// Both energies when the run began, and since when the bodies have had more than the hand put in [s].
 let began = null, exceeded_s = null;
 const EXCESS_SHARE = 0.1, EXCESS_S = 1.5;
 
-export function forgetEnergy() {
+export function forgetRun() {
   began = exceeded_s = null;
+  skips = [];
 }
 
 /// Bodies can store what the hand puts in, and no more. The two are not of one instant, so that only an
@@ -68,10 +82,10 @@ function figuresOf(state, tick_s) {
   return [
     ["simulated time", `${state.time_s.toFixed(1)} s`],
     ["rate", state.running ? `${Math.round(state.rate_hz)} of ${short(1 / tick_s)} ticks/s` : "-"],
-    ["lateness, 99th percentile", withUnit(state.late_p99_s, "s", 2)],
+    ["lateness, 99 %", withUnit(state.late_p99_s, "s", 2)],
     ["work per tick, median", withUnit(state.work_p50_s, "s", 2)],
-    ["work per tick, 99th percentile", withUnit(state.work_p99_s, "s", 2)],
-    ["skipped ticks", String(state.skipped_ticks)],
+    ["work per tick, 99 %", withUnit(state.work_p99_s, "s", 2)],
+    ["skipped ticks, from the start", String(state.skipped_ticks)],
     ["viewers", String(state.viewers)],
   ].filter(([, text]) => text && text !== "undefined");
 }

@@ -4,7 +4,7 @@ import { Controls } from "./controls.js";
 import { Handle } from "./handle.js";
 import { LIMITED } from "./messages.js";
 import {
-  element, forgetEnergy, notice, showForce, showHint, showHolder, showLegend, showState,
+  element, forgetRun, notice, showForce, showHint, showHolder, showLegend, showState,
 } from "./panel.js";
 import { Pointer } from "./pointer.js";
 import { RAMP } from "./ramp.js";
@@ -68,7 +68,7 @@ const on = {
     scenes.current = scene.scene;
     stage.load(scene, shapes, !isAnother);
     chart.reset(scene.hands.length);
-    forgetEnergy();
+    forgetRun();
     setHands();
     controls.setSliders(scene.sliders || []);
     showHolding();
@@ -93,7 +93,8 @@ const on = {
     showState(state, scene);
     controls.show(state);
     if (stage.range_m && stage.range_m !== shown) showLegend(shown = stage.range_m);
-    if (state.message) notice("info", state.message);
+    element("busy").hidden = !state.message;
+    element("busy").textContent = state.message || "";
     element("chart").setAttribute("aria-label", `Force and torque of ${chart.summary()}`);
   },
   notice: ({ level, text }) => notice(level, text),
