@@ -21,6 +21,8 @@ const std::vector<Target>& targets() {
       {"udp_packet", "poses and wrenches from the network", udp_packet},
       {"recording", "recorded poses of a hand (CSV)", recording},
       {"results", "force.csv and summary.json of a run", results},
+      {"viewer_message", "a message of a viewer of palpate touch (JSON), or a header of its handshake",
+       viewer_message},
 #ifdef PALPATE_FUZZ_FOREIGN
       {"medit", "a foreign mesh (Medit, binary)", medit},
       {"vtu", "a foreign mesh (VTK XML)", vtu},

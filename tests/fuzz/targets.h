@@ -37,6 +37,7 @@ void checkpoint_content(std::string_view bytes);
 void udp_packet(std::string_view bytes);
 void recording(std::string_view bytes);
 void results(std::string_view bytes);
+void viewer_message(std::string_view bytes);
 void medit(std::string_view bytes);
 void vtu(std::string_view bytes);
 void vtk(std::string_view bytes);
