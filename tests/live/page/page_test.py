@@ -57,7 +57,7 @@ class InBrowser(unittest.TestCase):
     def show(self, query="", width=1280, height=800, dark=False):
         self.tab.size(width, height, dark)
         self.tab.open(self.mock.address + query)
-        self.tab.wait_for("window.palpateFrames && palpateFrames() > 2 && "
+        self.tab.wait_for("window.palpateTest && palpateTest.frames() > 2 && "
                           f"{READING}.pose !== undefined", 60)
 
     def messages(self, kind):
@@ -78,7 +78,7 @@ class InBrowser(unittest.TestCase):
         """Returns where the tool's blue is on the screen [CSS pixels]."""
         return self.tab.value(
             "(async () => { await new Promise(requestAnimationFrame); const view = "
-            "document.getElementById('view'); window.palpateDraw(); const copy = "
+            "document.getElementById('view'); palpateTest.draw(); const copy = "
             "document.createElement('canvas'); "
             "copy.width = view.clientWidth; copy.height = view.clientHeight; "
             "const pen = copy.getContext('2d'); pen.drawImage(view, 0, 0, copy.width, copy.height); "
@@ -249,7 +249,8 @@ class Page(InBrowser):
                            "passivity": {"observed": True, "energy_j": 1e-3, "min": -2e-3}}
         self.tab.wait_for("document.querySelectorAll('#lights .bad').length === 3", 10)
         self.assertEqual(self.tab.value(lights), [
-            ["bad", "slower than real time: 60 % of it"], ["bad", "40 % of the ticks late, 12 skipped in 10 s"],
+            ["bad", "slower than real time: 60 % of it"],
+            ["bad", "40 % of the ticks late, 12 skipped in 10 s"],
             ["bad", "active: the hand got 2 mJ more than it put in"], ["", "energy is not computed"]])
 
     def test_energy_that_nobody_put_in_is_reported(self):
@@ -343,7 +344,7 @@ class Shading(InBrowser):
                        "document.getElementById('coloured').click()")
         time.sleep(0.3)
         return self.tab.value(
-            "(() => { palpateDraw(); const view = document.getElementById('view'), copy = "
+            "(() => { palpateTest.draw(); const view = document.getElementById('view'), copy = "
             "document.createElement('canvas'); copy.width = 200; copy.height = 160; const pen = "
             "copy.getContext('2d', {willReadFrequently: true}); pen.drawImage(view, 0, 0, 200, 160); "
             "return Array.from(pen.getImageData(0, 0, 200, 160).data); })()")

@@ -85,7 +85,7 @@ function figuresOf(state, tick_s) {
     ["lateness, 99 %", withUnit(state.late_p99_s, "s", 2)],
     ["work per tick, median", withUnit(state.work_p50_s, "s", 2)],
     ["work per tick, 99 %", withUnit(state.work_p99_s, "s", 2)],
-    ["skipped ticks, from the start", String(state.skipped_ticks)],
+    ["skipped ticks in all", String(state.skipped_ticks)],
     ["viewers", String(state.viewers)],
   ].filter(([, text]) => text && text !== "undefined");
 }

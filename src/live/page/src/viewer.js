@@ -93,6 +93,7 @@ const on = {
     showState(state, scene);
     controls.show(state);
     if (stage.range_m && stage.range_m !== shown) showLegend(shown = stage.range_m);
+    element("legend").dataset.displacement = Math.max(0, ...stage.bodies.map((one) => one.displacement_m));
     element("busy").hidden = !state.message;
     element("busy").textContent = state.message || "";
     element("chart").setAttribute("aria-label", `Force and torque of ${chart.summary()}`);
@@ -105,7 +106,12 @@ const on = {
     element("link").textContent = text;
     element("link").classList.toggle("bad", state !== "connected");
     element("cover").hidden = state === "connected";
-    if (state !== "connected") handle.setHolder("nobody"), showHolding();
+    if (state !== "connected") {
+      handle.setHolder("nobody");
+      showHolding();
+      controls.allow(false);
+      element("busy").hidden = true;
+    }
     const again = Number.isFinite(pause_s) ? ` Trying again in ${Math.ceil(pause_s)} s.` : "";
     element("cover-text").textContent = state === "ended"
       ? "palpate has ended. Start `palpate touch` again and open the address that it prints."
@@ -162,6 +168,14 @@ if (stage.works) {
   element("again").hidden = true;
   element("cover-text").textContent = "The view needs WebGL 2, which this browser does not offer.";
 }
-/// For tests: frames drawn so far; draws one, whose pixels can be read until the script returns.
-window.palpateFrames = () => stage.frames;
-window.palpateDraw = () => stage.draw();
+/// For tests: frames drawn so far; draws one, whose pixels can be read until the script returns; where the
+/// tool of the first hand is in the window.
+window.palpateTest = {
+  frames: () => stage.frames,
+  draw: () => stage.draw(),
+  tool: () => {
+    const { x, y } = stage.camera.onScreen(stage.tools[stage.toolOf(0)].position);
+    const { left, top } = stage.canvas.getBoundingClientRect();
+    return [left + x, top + y];
+  },
+};
