@@ -85,6 +85,7 @@ void WrenchLimiter::archive(Archive& a) {
   a("limited", limited_);
   a("rejected", rejected_);
   a("outside", outside_);
+  a("without_pose", without_pose_);
 }
 
 void WrenchLimiter::restart() {
@@ -97,6 +98,7 @@ Wrench WrenchLimiter::limit(double t, const Wrench& requested, bool valid) {
   const bool good_time = std::isfinite(t) && (!started_ || t > last_time_);
   const bool good_wrench = requested.force.allFinite() && requested.moment.allFinite();
   if (!good_time || (valid && !good_wrench)) ++rejected_;
+  without_pose_ += !valid;
   if (!good_time) {
     stalled_ += last_dt_;
     return last_ = fall(last_time_ - last_valid_ + stalled_);

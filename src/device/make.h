@@ -13,5 +13,8 @@ std::unique_ptr<Device> make_script(const DeviceSpec& spec, const std::string& f
 std::unique_ptr<Device> make_hand(const DeviceSpec& spec, const std::string& folder);
 std::unique_ptr<Device> make_recording(const DeviceSpec& spec, const std::string& folder);
 std::unique_ptr<Device> make_udp(const DeviceSpec& spec, const std::string& folder);
+std::unique_ptr<Device> make_plugin(const DeviceSpec& spec, const std::string& folder);
+std::unique_ptr<Device> make_spacemouse(const DeviceSpec& spec, const std::string& folder);
+std::unique_ptr<Device> make_gamepad(const DeviceSpec& spec, const std::string& folder);
 
 }  // namespace palpate::device

@@ -5,6 +5,7 @@
 
 #include "device/check_range.h"
 #include "palpate/core/registry.h"
+#include "palpate/device/device.h"
 #include "palpate/device/limiter.h"
 
 namespace palpate::device {
@@ -176,15 +177,8 @@ bool is_held(const DeviceSpec& spec) {
   return spec.type != "script" && spec.type != "recording" && spec.type != "hand";
 }
 
-}  // namespace
-
-DeviceFigures figures_of(const DeviceSpec& spec) {
-  DeviceProfile profile;
-  double slew = kDefaultSlew;
-  if (!spec.profile.empty()) {
-    profile = find(device_profiles(), spec.profile, "device profile");
-    slew = kAmplifierSlew;
-  }
+DeviceFigures effective_figures(const DeviceSpec& spec, const DeviceProfile& profile) {
+  double slew = spec.profile.empty() ? kDefaultSlew : kAmplifierSlew;
   const auto& figures = profile.figures;
   if (is_held(spec)) slew = slew_where_held(figures);
   DeviceFigures out{};
@@ -211,6 +205,27 @@ DeviceFigures figures_of(const DeviceSpec& spec) {
   if (!out.workspace.size.isZero(0.0)) out.specification.workspace = out.workspace.size;
   if (out.workspace.radius > 0.0) out.specification.workspace = Vec3::Constant(2.0 * out.workspace.radius);
   return out;
+}
+
+}  // namespace
+
+DeviceFigures figures_of(const DeviceSpec& spec) {
+  return effective_figures(
+      spec, spec.profile.empty() ? DeviceProfile{} : find(device_profiles(), spec.profile, "device profile"));
+}
+
+DeviceSpec with_reported_limits(DeviceSpec spec, const Device& device) {
+  const std::optional<DeviceSpecification> reported = device.reported();
+  if (!reported || !spec.profile.empty()) return spec;
+  DeviceProfile profile;
+  profile.figures = *reported;
+  const DeviceFigures figures = effective_figures(spec, profile);
+  spec.max_force_n = figures.max_force;
+  spec.max_torque_n_m = figures.max_torque;
+  spec.max_force_slew_n_s = figures.max_force_slew;
+  spec.max_torque_slew_n_m_s = figures.max_torque_slew;
+  if (!figures.workspace.size.isZero(0.0)) spec.workspace_size_m = figures.workspace.size;
+  return spec;
 }
 
 }  // namespace palpate::device

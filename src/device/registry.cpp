@@ -15,6 +15,11 @@ std::vector<PartKey> hand_keys() {
   return keys;
 }
 
+std::vector<PartKey> rate_keys() {
+  return part_keys({"input", "max_speed_m_s", "max_turn_rate_rad_s", "dead_zone", "mounting_rotation_rad",
+                    "start_position_m", "start_rotation_vector_rad"});
+}
+
 }  // namespace
 
 const Registry<MakeDevice>& device_registry() {
@@ -36,6 +41,15 @@ const Registry<MakeDevice>& device_registry() {
        0,
        make_udp,
        {{.name = "port", .required = true}, {.name = "address"}, {.name = "time_out_s"}, {.name = "wait_s"}}},
+      {"plugin",
+       "driver in a shared object, by the C interface palpate/device/plugin.h",
+       0,
+       make_plugin,
+       {{.name = "library", .required = true}, {.name = "library_options"}, {.name = "start_position_m"}}},
+      {"spacemouse", "six-degree-of-freedom mouse (daemon spacenavd) that sets the velocity of the handle", 0,
+       make_spacemouse, rate_keys()},
+      {"gamepad", "game pad (Linux event device) that sets the velocity of the handle; rumbles by the force",
+       0, make_gamepad, rate_keys()},
   };
   return registry;
 }

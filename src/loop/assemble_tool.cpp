@@ -102,6 +102,21 @@ MonolithicTool assemble_block(World& world, const scene::Hand& hand, const devic
   return out;
 }
 
+/// Returns the hand's [device] in the World's description.
+DeviceSpec& device_spec_of(scene::Description& d, const scene::Hand& hand) {
+  for (scene::HandSpec& other : d.hands)
+    if (&other.device == hand.device) return other.device;
+  PALPATE_CHECK(d.device && &*d.device == hand.device, "\"{}\" is of another description", hand.name);
+  return *d.device;
+}
+
+/// Returns the spec with the pose of the tool where it has no pose for the start.
+DeviceSpec started_at_tool(DeviceSpec spec, const ToolSpec& tool) {
+  if (!spec.start_position_m) spec.start_position_m = tool.position_m;
+  if (!spec.start_rotation_vector_rad) spec.start_rotation_vector_rad = tool.rotation_vector_rad;
+  return spec;
+}
+
 /// Builds the device. A recording in HDF5 is the record of another run's hand, which `device` cannot read.
 std::unique_ptr<device::Device> own_device_of(const DeviceSpec& spec, const std::string& folder) {
   const std::filesystem::path file(spec.file);
@@ -138,11 +153,12 @@ void warn_of_limit(const scene::Hand& hand, const tool::Tool& tool) {
 
 ToolInstance assemble_tool(World& world, const scene::Hand& hand, std::unique_ptr<device::Device> device) {
   const scene::Description& d = world.description;
-  const DeviceSpec& spec = *hand.device;
+  DeviceSpec& spec = device_spec_of(world.description, hand);
   const bool own_device = !device;
   if (own_device) {
-    device = own_device_of(spec, world.folder);
+    device = own_device_of(started_at_tool(spec, *hand.tool), world.folder);
     check_recorded_times(*device, spec, d.duration_s);
+    spec = device::with_reported_limits(spec, *device);
   }
   const device::DeviceFigures figures = device::figures_of(spec);
   device::WrenchLimiter limiter(figures.max_force, figures.max_torque, figures.ramp, figures.max_force_slew,

@@ -209,6 +209,7 @@ void BodyLoop::sum_up() {
     hand.limited_ticks = tool.limiter.limited_ticks();
     hand.outside_ticks = tool.limiter.outside_ticks();
     hand.rejected_ticks = tool.limiter.rejected_ticks();
+    hand.ticks_without_pose = tool.limiter.ticks_without_pose();
     if (hand_ticks_[i].vibration) hand.buzz_n = hand_ticks_[i].vibration->rms();
     if (tool.passivity) {
       const device::PassivityObserver& port = tool.passivity->observer();
@@ -223,6 +224,7 @@ void BodyLoop::sum_up() {
     result_.limited_ticks = hand.limited_ticks;
     result_.outside_ticks = hand.outside_ticks;
     result_.rejected_ticks = hand.rejected_ticks;
+    result_.ticks_without_pose = hand.ticks_without_pose;
     result_.buzz_n = hand.buzz_n;
     result_.port = hand.port;
   }

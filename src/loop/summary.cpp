@@ -208,7 +208,9 @@ void add_vibration_and_port(store::SummaryFields& row, const HandResult& hand) {
 
 /// Returns the result of a hand, in the numbering of scene::hands_of().
 HandResult hand_result(const RunResult& r, std::size_t hand) {
-  if (hand == 0) return {r.ticks, r.limited_ticks, r.outside_ticks, r.rejected_ticks, r.port, r.buzz_n};
+  if (hand == 0)
+    return {r.ticks, r.limited_ticks, r.outside_ticks,     r.rejected_ticks,
+            r.port,  r.buzz_n,        r.ticks_without_pose};
   return hand <= r.more_hands.size() ? r.more_hands[hand - 1] : HandResult{};  // the run has not ended
 }
 
@@ -225,6 +227,7 @@ void add_hands(store::Summary& summary, const World& world, const RunResult& res
                                 {"limited_ticks", static_cast<long long>(hand.limited_ticks)},
                                 {"ticks_outside_workspace", static_cast<long long>(hand.outside_ticks)},
                                 {"rejected_ticks", static_cast<long long>(hand.rejected_ticks)},
+                                {"ticks_without_pose", static_cast<long long>(hand.ticks_without_pose)},
                                 {"max_force_n", device.max_force},
                                 {"max_torque_n_m", device.max_torque}};
     if (i < peaks.size())

@@ -131,12 +131,47 @@ KeyTable<DeviceSpec> source_keys() {
   };
 }
 
+/// Keys of a driver in a shared object and of devices with rate control.
+KeyTable<DeviceSpec> driver_keys() {
+  using Ranges = DeviceRanges;
+  using Spec = DeviceSpec;
+  const auto start = [](const char* name, std::optional<Vec3> Spec::*member, const char* meaning) {
+    return unless("the tool's",
+                  own_key<Spec>(
+                      name, [member](const Value& v, Spec& spec) { spec.*member = read_vec3(v, any()); },
+                      "three numbers", "", meaning));
+  };
+  return {
+      unless("none",
+             text("library", &Spec::library, {},
+                  "shared object with a driver: a path from the scene's folder, or a name that the loader "
+                  "finds")),
+      unless("none", text("library_options", &Spec::library_options, {},
+                          "text that the driver receives, such as the name of a serial port")),
+      unless("the device's", text("input", &Spec::input, {},
+                                  "socket of the daemon (spacemouse), or event file such as "
+                                  "/dev/input/event5 (gamepad)")),
+      number("max_speed_m_s", &Spec::max_speed_m_s, Ranges::full_speed,
+             "speed of the handle at full deflection"),
+      number("max_turn_rate_rad_s", &Spec::max_turn_rate_rad_s, Ranges::full_speed,
+             "angular speed of the handle at full deflection"),
+      number("dead_zone", &Spec::dead_zone, Ranges::dead_zone,
+             "part of the full deflection of each axis that does not move the handle"),
+      vec3("mounting_rotation_rad", &Spec::mounting_rotation_rad, any(),
+           "rotation vector that turns the device's axes (right x, away from the user y, up z) into the "
+           "scene's"),
+      start("start_position_m", &Spec::start_position_m, "position of the handle at the start"),
+      start("start_rotation_vector_rad", &Spec::start_rotation_vector_rad,
+            "orientation of the handle at the start"),
+  };
+}
+
 }  // namespace
 
 const KeyTable<DeviceSpec>& device_keys() {
   static const KeyTable<DeviceSpec> keys = [] {
     KeyTable<DeviceSpec> out = common_keys();
-    for (const auto& more : {simulated_hand_keys(), source_keys()})
+    for (const auto& more : {simulated_hand_keys(), source_keys(), driver_keys()})
       out.insert(out.end(), more.begin(), more.end());
     return out;
   }();

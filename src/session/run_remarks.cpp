@@ -19,6 +19,25 @@ std::string hand_label(const loop::World& world, std::size_t hand) {
   return hand == 0 ? "the hand" : fmt::format("hand \"{}\"", world.description.hands[hand - 1].name);
 }
 
+/// Returns the number of ticks without a pose, and of all ticks.
+std::pair<long, long> ticks_without_pose(const loop::RunResult& result, std::size_t hand) {
+  if (hand == 0) return {result.ticks_without_pose, result.ticks};
+  const loop::HandResult& more = result.more_hands[hand - 1];
+  return {more.ticks_without_pose, more.ticks};
+}
+
+/// Adds the ticks for which a device had no pose.
+void add_gaps(const loop::World& world, const loop::RunResult& result, Remarks& out) {
+  for (std::size_t hand = 0; hand <= result.more_hands.size(); ++hand) {
+    const auto [without, ticks] = ticks_without_pose(result, hand);
+    if (without == 0) continue;
+    out.push_back(
+        fmt::format("device of {}: no pose for {} of {} ticks; the force is zero from 20 ms after the last "
+                    "pose on",
+                    hand_label(world, hand), without, ticks));
+  }
+}
+
 /// Adds the event counts of a device, with "packets_stale" printed as "3 packets stale".
 void add_device_counts(const loop::World& world, std::size_t hand, Remarks& out) {
   std::string text;
@@ -91,6 +110,18 @@ void add_port(const loop::PortEnergy& port, Remarks& out) {
 
 }  // namespace
 
+void check_poses_arrived(const loop::World& world, const loop::RunResult& result, MissingOutputs& missing) {
+  if (result.stopped || result.ticks == 0) return;
+  for (std::size_t hand = 0; hand <= result.more_hands.size(); ++hand) {
+    const auto [without, ticks] = ticks_without_pose(result, hand);
+    if (2 * without > ticks)
+      missing.add(fmt::format("force on {}", hand_label(world, hand)),
+                  fmt::format("its device had no pose for {} of {} ticks: whoever moves it stopped sending; "
+                              "keep it sending poses, or increase device.time_out_s",
+                              without, ticks));
+  }
+}
+
 std::vector<std::string> run_remarks(const loop::World& world, const loop::RunResult& result) {
   Remarks out;
   if (world.stepper)
@@ -98,6 +129,7 @@ std::vector<std::string> run_remarks(const loop::World& world, const loop::RunRe
       out.push_back(fmt::format("fallbacks of {}: {}", world.stepper->name(), fallbacks));
   if (result.ticks > 0)
     for (std::size_t i = 0; i <= result.more_hands.size(); ++i) add_device_counts(world, i, out);
+  add_gaps(world, result, out);
   add_ticks(result, out);
   if (result.buzz_n)
     out.push_back(fmt::format("buzz: {:.3g} N RMS of the force on the hand above 30 Hz", *result.buzz_n));

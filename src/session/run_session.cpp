@@ -152,6 +152,7 @@ void RunSession::simulate(const Callbacks& callbacks) {
   }
   close_records();
   ran_.remarks = run_remarks(*world_, ran_.result);
+  check_poses_arrived(*world_, ran_.result, ran_.missing);
   if (!scheme_remark_.empty()) ran_.remarks.insert(ran_.remarks.begin(), scheme_remark_);
 }
 

@@ -23,13 +23,18 @@ TYPES = {
 }
 # Longest first: "_n_m" is the ending of a stiffness and of a torque.
 UNITS = {"n_m_rad": ("N m/rad",), "n_s_m": ("N s/m",), "per_s": ("1/s",), "n_m": ("N m", "N/m"),
-         "mib": ("MiB",), "rad": ("rad",), "m2": ("m²",), "m": ("m",), "n": ("N",), "j": ("J",), "s": ("s",)}
+         "mib": ("MiB",), "us": ("µs",), "rad": ("rad",), "m2": ("m²",), "m": ("m",), "n": ("N",), "j": ("J",), "s": ("s",)}
 SNAKE_CASE = re.compile("[a-z][a-z0-9]*(_[a-z0-9]+)*")
 # Keys that no scene of this test has: they need an event that is rare, a peer, or minutes.
 ELSEWHERE = {"figures.options.ordering", "figures.sizes.smallest_step_part",
              "figures.monolithic_reference.trouble",
              "figures.virtual_time_reference.trouble", "figures.cells.total", "figures.cells.unexpected",
              "figures.timings.cells_cpu_s"}
+
+# Counters of devices that need hardware, a driver or a peer (devices_test.py).
+OF_DEVICES = ("wrenches_unsent", "poses_accepted", "poses_not_finite", "poses_out_of_bounds",
+              "longest_driver_call_us", "motion_packets", "button_packets", "other_packets", "pad_events",
+              "rumble_changes", "connections_lost")
 
 
 class Row(NamedTuple):
@@ -167,6 +172,7 @@ class Schema(Cli):
         figures = take("study", "s.toml")
         self.assertEqual(figures["tasks"]["total"], 2)
         elsewhere = ELSEWHERE | {path for path in self.schema if path.startswith("figures.hands[].packets_")}
+        elsewhere |= {f"figures.hands[].{name}" for name in OF_DEVICES}
         if (PROGRAM.parent / "palpate-model").exists():
             figures = take("run", "squeeze-ball", "--duration-s", "0.05",
                            *change("contact.1.method=image"),

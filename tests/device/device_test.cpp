@@ -11,6 +11,7 @@
 #include "palpate/device/limiter.h"
 #include "palpate/device/profile.h"
 #include "palpate/device/registry.h"
+#include "stand_ins.h"
 #include "temporary_folder.h"
 
 using namespace palpate;
@@ -50,6 +51,9 @@ DeviceSpec spec_of(const std::string& type, const TemporaryFolder& folder) {
                "time_s,px_m,py_m,pz_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0.5,0.1,0,0,1,0,0,0\n1,0,0,0,0,1,0,0\n");
   spec.file = "poses.csv";
   spec.port = 47931;
+  if (type == "plugin") spec.library = std::string(PALPATE_DRIVERS) + "/driver.so";
+  if (type == "spacemouse") spec.input = (folder / "spnav.sock").string();
+  if (type == "gamepad") spec.input = (folder / "event0").string();
   return spec;
 }
 
@@ -83,6 +87,8 @@ TEST(Device, opens_before_its_first_sample_and_closes_once) {
 // Conformance suite: every device of the registry.
 TEST(Device, every_listed_one_samples) {
   const TemporaryFolder folder;
+  SpacemouseServer server((folder / "spnav.sock").string());
+  EventPipe pipe((folder / "event0").string());
   int paths = 0;
   for (const auto& entry : device_registry()) {
     const DeviceSpec spec = spec_of(entry.name, folder);
@@ -107,7 +113,7 @@ TEST(Device, every_listed_one_samples) {
     }
     ++paths;
   }
-  EXPECT_EQ(device_registry().size(), 4u);
+  EXPECT_EQ(device_registry().size(), 7u);
   EXPECT_EQ(paths, 2) << "script and recording know theirs beforehand";
 }
 
@@ -153,7 +159,8 @@ TEST(Device, pulls_nobody_at_once) {
   for (const auto& entry : device_registry()) {
     DeviceSpec spec;
     spec.type = entry.name;
-    EXPECT_EQ(figures_of(spec).ramp, entry.name == "udp" ? 0.2 : 0.0) << entry.name;
+    const bool is_moved = entry.name == "script" || entry.name == "hand" || entry.name == "recording";
+    EXPECT_EQ(figures_of(spec).ramp, is_moved ? 0.0 : 0.2) << entry.name;
     spec.ramp_s = 0.05;
     EXPECT_EQ(figures_of(spec).ramp, 0.05) << entry.name << ": what is given wins";
     spec.ramp_s = 0.0;

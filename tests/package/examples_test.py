@@ -4,6 +4,7 @@ copy, and compares the printed results with theory.
 
     examples_test.py BUILD [CXX]
 """
+import json
 import math
 import re
 import sys
@@ -41,8 +42,8 @@ class Examples(Installed):
 
     def test_readme_lists_and_runs_every_example(self):
         self.assertGreaterEqual(len(PROGRAMS), 5)
-        listed = re.findall(r"^\| \[(\w+\.(?:cpp|py))\]\(\1\) \| [^|]+ \|$", README, re.M)
-        files = [path.name for pattern in ("*.cpp", "*.py") for path in EXAMPLES.glob(pattern)]
+        listed = re.findall(r"^\| \[(\w+\.(?:cpp|c|py))\]\(\1\) \| [^|]+ \|$", README, re.M)
+        files = [path.name for pattern in ("*.cpp", "*.c", "*.py") for path in EXAMPLES.glob(pattern)]
         self.assertEqual(sorted(listed), sorted(files))
         self.assertEqual([program for program in PROGRAMS if program not in self.printed], [])
 
@@ -118,6 +119,20 @@ class Examples(Installed):
         status, text = self.configure(EXAMPLES, self.folder / "hidden", *hidden)
         self.assertNotEqual(status, 0)
         self.assertIn("Simbody", text)
+
+    def test_driver_needs_the_header_alone_and_moves_a_tool(self):
+        self.assertLessEqual(len((EXAMPLES / "device_driver.c").read_text().splitlines()), 60)
+        commands = re.findall(r"^```sh\n(.*?)^```$", README, re.M | re.S)[1]
+        environment = {**CLEAN, "HOME": str(self.prefix.parent)}
+        status, text = call("bash", "-e", "-c", commands, env=environment, cwd=self.clone, timeout=500)
+        self.assertEqual(status, 0, text)
+        summary = json.loads((self.clone / "out/driver/summary.json").read_text())
+        (hand,) = summary["figures"]["hands"]
+        self.assertEqual(hand["max_force_n"], 5.0)
+        self.assertGreater(hand["peak_force_n"], 0.1)
+        # it includes one header of palpate, which includes none
+        header = (self.prefix / "include/palpate/device/plugin.h").read_text()
+        self.assertEqual(re.findall(r"#include (.*)", header), ["<stdint.h>"])
 
     def test_page_of_the_library_shows_examples(self):
         page = (SOURCE / "docs/library.md").read_text()

@@ -20,6 +20,8 @@ using namespace palpate;
 std::string needed_by(const std::string& type) {
   if (type == "recording") return "file = \"poses.csv\"\n";
   if (type == "udp") return "port = 4711\n";
+  if (type == "plugin") return "library = \"driver.so\"\n";
+  if (type == "spacemouse" || type == "gamepad") return "# no key is required\n";
   return "keyframe = [{ time_s = 0.0 }]\n";
 }
 
@@ -41,6 +43,11 @@ std::string value_of(const scene::KeyRow& row) {
   static const std::map<std::string, std::string> own = {{"profile", "\"omni\""},
                                                          {"file", "\"poses.csv\""},
                                                          {"port", "4711"},
+                                                         {"library", "\"driver.so\""},
+                                                         {"library_options", "\"/dev/ttyUSB0\""},
+                                                         {"input", "\"/run/spnav.sock\""},
+                                                         {"start_position_m", "[0, 0, 0.1]"},
+                                                         {"start_rotation_vector_rad", "[0, 0, 1]"},
                                                          {"keyframe", "[{ time_s = 0.0 }]"},
                                                          {"motion", "[{ amplitude_m = [0, 0, 0.01] }]"},
                                                          {"press", "[{ switch = 1 }]"},
@@ -88,9 +95,12 @@ TEST(DeviceKeys, EveryTypeTakesItsOwnAndRefusesTheOthers) {
       ++refused;
     }
   }
-  EXPECT_EQ(taken, 2 + 17 + 2 + 3) << "motion, press; these and a hand's 15; clock; address, time-out, wait";
-  EXPECT_EQ(common, 4 * 10) << "profile, four limits, ramp, and four keys of the workspace";
-  EXPECT_EQ(refused, 22 + 7 + 22 + 21) << "of 3 for scripts, 15 for hands, 3 for recordings, 4 for peers";
+  EXPECT_EQ(taken, 2 + 17 + 2 + 3 + 2 + 7 + 7)
+      << "motion, press; these and a hand's 15; clock; address, time-out, wait; options, start; rate control";
+  EXPECT_EQ(common, 7 * 10) << "profile, four limits, ramp, and four keys of the workspace";
+  EXPECT_EQ(refused, 31 + 16 + 31 + 30 + 31 + 27 + 27)
+      << "of 34: 3 for scripts, 15 for hands, 3 for recordings, 4 for peers, 2 for drivers, 7 for rate "
+         "control";
 }
 
 TEST(DeviceKeys, WhatATypeNeedsIsAskedFor) {
@@ -104,7 +114,7 @@ TEST(DeviceKeys, WhatATypeNeedsIsAskedFor) {
                                    entry.name + "\" needs it");
       ++asked;
     }
-  EXPECT_EQ(asked, 4) << "one each";
+  EXPECT_EQ(asked, 5) << "one each, none for rate control";
 }
 
 TEST(DeviceKeys, EveryProfileIsTakenByEveryType) {
@@ -117,7 +127,7 @@ TEST(DeviceKeys, EveryProfileIsTakenByEveryType) {
       EXPECT_EQ(device::figures_of(*d.device).max_force, one.figures.max_force.value()) << one.name;
       ++taken;
     }
-  EXPECT_EQ(taken, 24);
+  EXPECT_EQ(taken, 42);
 }
 
 TEST(DeviceKeys, UnknownNamesAreRefusedWithSuggestions) {

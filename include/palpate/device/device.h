@@ -99,6 +99,9 @@ class Device {
 
   /// Returns the capabilities of the device; figures that are not known are left empty.
   virtual DeviceSpecification specification() const = 0;
+  /// Returns the capabilities that a driver reports of its hardware, which take the place of a profile;
+  /// empty: none.
+  virtual std::optional<DeviceSpecification> reported() const { return {}; }
   /// Returns the motion as a function of time, valid at any time, if it is known in advance; empty if the
   /// motion depends on the wrench or on a person. Monolithic integration of tool and bodies requires it.
   virtual std::function<HandleSample(double t)> path() const { return {}; }

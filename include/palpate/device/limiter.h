@@ -56,6 +56,8 @@ class WrenchLimiter {
   long rejected_ticks() const { return rejected_; }
   /// Returns the number of valid ticks outside the workspace.
   long outside_ticks() const { return outside_; }
+  /// Returns the number of ticks without a valid pose.
+  long ticks_without_pose() const { return without_pose_; }
   void archive(Archive& a);  ///< Writes the state to an archive, or restores it.
 
  private:
@@ -72,7 +74,7 @@ class WrenchLimiter {
   Wrench held_;                             ///< Output at the last valid pose.
   Workspace workspace_;                     ///< Unbounded without confine().
   const Device* device_ = nullptr;          ///< null: not confined
-  long limited_ = 0, rejected_ = 0, outside_ = 0;
+  long limited_ = 0, rejected_ = 0, outside_ = 0, without_pose_ = 0;
 };
 
 }  // namespace palpate::device

@@ -9,6 +9,8 @@
 
 namespace palpate::device {
 
+class Device;
+
 /// Published figures of one device, identified by `device.profile`.
 struct DeviceProfile {
   std::string name, summary;                      ///< Name in a scene; one-line description.
@@ -33,5 +35,8 @@ struct DeviceFigures {
 };
 /// Returns the effective parameters.  @throws Error for an unknown profile or a parameter out of range
 DeviceFigures figures_of(const DeviceSpec& spec);
+/// Returns the spec with the limits that the driver of the device reports, where the spec has neither a value
+/// nor a profile.
+DeviceSpec with_reported_limits(DeviceSpec spec, const Device& device);
 
 }  // namespace palpate::device

@@ -95,6 +95,19 @@ struct DeviceSpec {
   int port = 0;                       ///< UDP port that receives poses.
   double time_out_s = 0.002;          ///< Samples are invalid this long after the last pose.
   double wait_s = 30.0;               ///< Longest wait for the first pose, before the clock starts.
+
+  // Driver in a shared object.
+  std::string library{};          ///< Path relative to the scene's folder, or a name that the loader finds.
+  std::string library_options{};  ///< Text for the driver, such as the name of a serial port.
+
+  // Rate control: the deflection of a stick or a knob sets the velocity of the handle.
+  std::string input{};                            ///< Socket or event file; empty: found by the device.
+  double max_speed_m_s = 0.1;                     ///< Speed at full deflection.
+  double max_turn_rate_rad_s = 1.0;               ///< Angular speed at full deflection.
+  double dead_zone = 0.1;                         ///< Part of the full deflection that has no effect.
+  Vec3 mounting_rotation_rad = Vec3::Zero();      ///< Rotation vector from the device's axes to the scene's.
+  std::optional<Vec3> start_position_m;           ///< Handle at the start; empty: at the tool.
+  std::optional<Vec3> start_rotation_vector_rad;  ///< Orientation at the start; empty: the tool's.
 };
 
 /// Valid ranges of the parameters, checked by the scene loader and by the device.
@@ -129,6 +142,10 @@ struct DeviceRanges {
   static constexpr Range time_out_s = Range::positive("two ticks, 0.002, are usual");
   /// Longest wait for the first pose [s].
   static constexpr Range wait_s = Range::positive("30 leaves time to start the peer");
+  /// Speed of the handle at full deflection [m/s, rad/s].
+  static constexpr Range full_speed = Range::at_least(0.0, "0 holds the handle");
+  /// Part of the full deflection.
+  static constexpr Range dead_zone = Range::closed(0.0, 0.9, "0.1 is usual");
   /// Seconds per unit of a recording's times.
   static constexpr Range time_scale = Range::positive("0.001 is for milliseconds, 1e-6 for microseconds");
 };

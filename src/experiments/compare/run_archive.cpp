@@ -9,12 +9,13 @@ namespace {
 
 // A RunResult contains, in addition to its numbers, a status, a flag (padded to a word), the members that
 // archive_result() lists, and members that a comparison does not have: the real-time clock (runs are in
-// virtual time), the energy at the device port, buzz, and the results of further hands.
+// virtual time), the energy at the device port, buzz, ticks without a pose, and the results of further hands.
 static_assert(dynamics::bytes_of_counters<loop::RunResult>() + sizeof(dynamics::StepResult) + sizeof(double) +
                       sizeof(std::vector<long>) + sizeof(std::optional<loop::EnergyBalance>) +
                       sizeof(std::string) + sizeof(dynamics::StepperCounters::most_halvings) +
                       sizeof(std::optional<loop::RealTimeResult>) + sizeof(std::optional<loop::PortEnergy>) +
-                      sizeof(std::optional<double>) + sizeof(std::vector<loop::HandResult>) ==
+                      sizeof(std::optional<double>) + sizeof(loop::RunResult::ticks_without_pose) +
+                      sizeof(std::vector<loop::HandResult>) ==
                   sizeof(loop::RunResult),
               "archive_result() leaves out a member of RunResult");
 
