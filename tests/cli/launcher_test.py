@@ -43,6 +43,7 @@ echo "ninja $*" >>"$CALLS"
 echo "[1/1 1s] Linking"
 printf '#!/bin/sh\nfor a; do echo "[$a]"; done\nexit 7\n' >"$2/bin/palpate"
 chmod +x "$2/bin/palpate"
+[ ! -e "$FAKE/wheel" ] || { mkdir -p "$2/wheel"; touch "$2/wheel/palpate-1.whl"; }
 """,
     "cpack": r"""
 echo "cpack $* in $PWD" >>"$CALLS"
@@ -258,6 +259,20 @@ class Launcher(unittest.TestCase):
         self.assertIn("package takes no argument", done.stderr)
         self.assertFalse(self.called("cpack"))
 
+    def test_wheel_is_built_with_python_and_named(self):
+        (self.fake / "wheel").write_text("")
+        done = self.launch("wheel")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout, f"{self.tree}/build/release/wheel/palpate-1.whl\n")
+        self.assertEqual(self.called("cmake"), ["cmake --preset release -DPALPATE_WITH_PYTHON=ON"])
+        self.assertTrue(self.called("ninja")[0].endswith(" wheel palpate-model palpate"), self.calls)
+        (self.tree / "build/release/CMakeCache.txt").write_text("PALPATE_WITH_PYTHON:BOOL=ON\n")
+        self.launch("wheel")
+        self.assertEqual(self.called("cmake"), [], "configured once")
+        done = self.launch("wheel", "now")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("wheel takes no argument", done.stderr)
+
     def test_test_builds_all_and_leaves_slow_ones_out(self):
         self.launch("test", "-R", "fem")
         self.assertTrue(self.called("ninja")[0].endswith(" all"), self.calls)
@@ -289,7 +304,8 @@ class Launcher(unittest.TestCase):
 
     def test_help_of_test_and_build_builds_nothing(self):
         (self.fake / "missing").write_text("libccd-dev\n")  # installs nothing
-        for command, word in {"test": "--slow", "build": "[target...]", "package": "libpalpate-dev"}.items():
+        for command, word in {"test": "--slow", "build": "[target...]", "package": "libpalpate-dev",
+                              "wheel": "pip install"}.items():
             for option in "--help", "-h":
                 done = self.launch(command, "-R", "fem", option)
                 self.assertEqual((done.returncode, done.stderr, self.calls), (0, "", []), command)
