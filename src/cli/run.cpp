@@ -16,17 +16,22 @@
 namespace palpate::cli {
 namespace {
 
+session::Callbacks callbacks_to_terminal() {
+  session::Callbacks out;
+  out.stop = &stop_flag();
+  out.waiting = [](const std::string& awaited) {
+    fmt::print("waiting for {}\n", awaited);
+    std::fflush(stdout);
+  };
+  return out;
+}
+
 /// Calls one step of a run while a line on the terminal shows its progress.
 void with_progress(const std::string& what, session::RunSession& run,
                    void (session::RunSession::*step)(const session::Callbacks&)) {
   Progress progress(what);
-  session::Callbacks callbacks;
+  session::Callbacks callbacks = callbacks_to_terminal();
   callbacks.progress = [&progress](double fraction) { progress(fraction); };
-  callbacks.stop = &stop_flag();
-  callbacks.waiting = [](const std::string& awaited) {
-    fmt::print("waiting for {}\n", awaited);
-    std::fflush(stdout);
-  };
   (run.*step)(callbacks);
 }
 
@@ -34,9 +39,13 @@ int run_to_end(const session::Options& options, const scene::Description& descri
                MissingOutputs& missing, session::Resumption* resumption) {
   using session::RunSession;
   RunSession run(options, description, resumption);
-  const std::string what =
-      (std::isinf(options.duration_s) ? "running until Ctrl-C: " : "running ") + short_name(description);
-  with_progress(what, run, &RunSession::simulate);
+  if (std::isinf(options.duration_s)) {
+    fmt::print("{}: runs until Ctrl-C\n", short_name(description));
+    std::fflush(stdout);
+    run.simulate(callbacks_to_terminal());
+  } else {
+    with_progress("running " + short_name(description), run, &RunSession::simulate);
+  }
   print_outcome(run.world(), run.output(), options);
   with_progress("computing the reference", run, &RunSession::compare_with_references);
   print_against_references(run.world(), run.output());

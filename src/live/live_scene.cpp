@@ -1,8 +1,10 @@
 #include "live/live_scene.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "live/scene_messages.h"
+#include "palpate/core/error.h"
 #include "palpate/scene/hands.h"
 
 namespace palpate::live {
@@ -21,9 +23,10 @@ LiveScene::LiveScene(const loop::World& world, const std::string& name_in, std::
       hands(scene::hands_of(world.description).size()),
       has_hand(hands > 0),
       frames(frame_values(world)),
-      strip(hands),
+      strip(std::min(hands, kMostHands)),
       handle(std::move(mailbox)),
       moduli(world.bodies.size()) {
+  if (hands > kMostHands) fail("{}: has {} hands; palpate touch shows at most {}", name, hands, kMostHands);
   const std::vector<SceneSurface> obstacles = obstacle_surfaces(world);
   description = scene_message(world, name, sliders, obstacles);
   geometry = geometry_message(world, obstacles);

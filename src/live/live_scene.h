@@ -17,15 +17,16 @@
 
 namespace palpate::live {
 
-/// One assembled scene as its viewers see it: two constant messages that describe it, and the buffers through
+/// One assembled scene as its viewers see it: two messages that describe it, and the buffers through
 /// which its simulation and the server's thread exchange data without waiting.
 struct LiveScene {
+  /// @throws Error for more than kMostHands hands
   /// @param sliders  their body indices are those of the world
   LiveScene(const loop::World& world, const std::string& name, std::vector<Slider> sliders,
             std::shared_ptr<HandleMailbox> mailbox);
 
   std::string name;         ///< Name by which it was opened.
-  std::string description;  ///< Message `scene`.
+  std::string description;  ///< Message `scene`; the server keeps its sliders up to date.
   Bytes geometry;           ///< Message `geometry`.
   std::vector<Slider> sliders;
   std::size_t hands;         ///< Number of hands.

@@ -38,6 +38,13 @@ std::string state_text(const LiveStatus& status, const SessionState& session, bo
   return text_of(out);
 }
 
+std::string with_slider_value(const std::string& scene_message, const std::string& key, double value) {
+  json message = json::parse(scene_message);
+  for (json& slider : message["sliders"])
+    if (slider["key"] == key) slider["value"] = value;
+  return text_of(message);
+}
+
 std::string notice_text(const char* level, const std::string& text) {
   return text_of({{"type", "notice"}, {"level", level}, {"text", text}});
 }

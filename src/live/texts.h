@@ -16,6 +16,8 @@ struct ViewerPlace {
 /// Returns the message `state`.  @param now_s  wall clock  @param paused  whether viewers paused the run
 std::string state_text(const LiveStatus& status, const SessionState& session, bool paused,
                        const ViewerPlace& place, double now_s);
+/// Returns a message `scene` with another value of a slider.
+std::string with_slider_value(const std::string& scene_message, const std::string& key, double value);
 /// Returns the message `notice`.  @param level  "info", "warning" or "error"
 std::string notice_text(const char* level, const std::string& text);
 /// Returns the message `recorded`.  @param command  command that repeats or shows the recording

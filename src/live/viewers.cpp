@@ -118,6 +118,8 @@ std::string Viewers::set(const SetValue& message) {
     return {};
   }
   scene_->moduli[static_cast<std::size_t>(found->body)] = message.value;
+  found->value = message.value;
+  scene_->description = with_slider_value(scene_->description, found->key, found->value);
   controls_.note(change);
   return {};
 }

@@ -86,6 +86,7 @@ TEST_F(ViewersOfAScene, SlidersHaveBoundsAndYoungsModulusChangesAtOnce) {
   EXPECT_EQ(send(one, R"({"type":"set","key":"body.0.youngs_modulus_pa","value":2e4})"), "");
   EXPECT_FALSE(controls.leave());
   EXPECT_EQ(scene->moduli[0].load(), 2e4);
+  EXPECT_NE(scene->description.find("\"value\":20000.0"), std::string::npos) << "for viewers that come later";
   EXPECT_EQ(controls.take().values.at("body.0.youngs_modulus_pa"), 2e4) << "for the next assembly";
   scene->is_recorded = true;
   EXPECT_NE(send(one, R"({"type":"set","key":"body.0.youngs_modulus_pa","value":3e4})").find("recording"),

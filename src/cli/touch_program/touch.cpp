@@ -60,9 +60,9 @@ void print_line(const std::string& line) {
   std::fflush(stdout);
 }
 
-void announce(const live::Server& server, bool no_browser) {
+void announce(const live::Server& server, ForwardingPage& page, bool no_browser) {
   print_line("palpate touch: " + server.url());
-  const bool opened = !no_browser && has_display() && open_browser(server.url());
+  const bool opened = !no_browser && has_display() && page.open(server.url());
   print_line(opened ? "opened in your browser; Ctrl-C ends it"
                     : "open this address in a browser; Ctrl-C ends it");
   if (!opened && std::getenv("SSH_CONNECTION"))
@@ -71,6 +71,7 @@ void announce(const live::Server& server, bool no_browser) {
 }
 
 int touch(const TouchArguments& arguments) {
+  ForwardingPage page;
   live::TouchOptions options;
   options.server.address = arguments.address;
   options.server.port = arguments.port;
@@ -84,7 +85,7 @@ int touch(const TouchArguments& arguments) {
     one.overrides = overrides;
     return scene_of(one);
   };
-  options.started = [&](const live::Server& server) { announce(server, arguments.no_browser); };
+  options.started = [&](const live::Server& server) { announce(server, page, arguments.no_browser); };
   options.report = print_line;
   options.stop = &stop_flag();
   live::run_touch_session(std::move(options));
