@@ -20,6 +20,12 @@ using End = ProcessPool::Outcome::End;
 
 namespace {
 
+/// Starts the helper process before any test of this program starts a thread.
+struct Prepared : testing::Environment {
+  void SetUp() override { ProcessPool::prepare(); }
+};
+[[maybe_unused]] const auto* const kPrepared = testing::AddGlobalTestEnvironment(new Prepared);
+
 ProcessPool::Outcome outcome_of(ProcessPool::Work work, const std::string& input = "",
                                 double limit_s = 60.0) {
   ProcessPool pool(1);

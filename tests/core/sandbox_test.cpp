@@ -51,7 +51,7 @@ TEST(Rehearsal, TheChildsDeathIsARefusal) {
             "f.h5: is damaged: HDF5 fails while reading it (status 1); copy it again, or recreate it");
   EXPECT_EQ(refusal([] { throw std::bad_alloc(); }),
             "f.h5: reading it takes more memory than is available; it is damaged or too large");
-  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child was left";
+  EXPECT_LE(::waitpid(-1, nullptr, WNOHANG), 0) << "an ended child was left";
 }
 
 #ifndef PALPATE_SANITIZED
