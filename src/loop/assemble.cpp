@@ -191,13 +191,23 @@ void add_forces(World& world, Body& body, const SoftBodySpec& spec, const fem::M
                                          body.block_id));
 }
 
-/// Returns whether a message begins with the file that it refers to: the text before its first colon is a
-/// file.
-/// @param scene  path of the scene, accepted even if there is no such file
-bool begins_with_file(const std::string& message, const std::string& scene) {
-  std::error_code none;
-  return (!scene.empty() && message.starts_with(scene)) ||
-         std::filesystem::exists(message.substr(0, message.find(':')), none);
+/// Returns whether a message begins with the location of its fault: the scene file, or a file that the scene
+/// reads. Other words before a colon are none, whatever files the working folder contains.
+bool begins_with_file(const std::string& message, const World& world) {
+  const auto begins = [&](const std::string& path) {
+    return !path.empty() && message.starts_with(path) && message.substr(path.size()).starts_with(':');
+  };
+  const auto reads = [&](const std::string& file) {
+    return !file.empty() && begins((std::filesystem::path(world.folder) / file).string());
+  };
+  const scene::Description& d = world.description;
+  const std::vector<scene::Hand> hands = scene::hands_of(d);
+  return begins(d.path) ||
+         std::any_of(d.bodies.begin(), d.bodies.end(),
+                     [&](const SoftBodySpec& body) { return reads(body.mesh.file); }) ||
+         std::any_of(hands.begin(), hands.end(), [&](const scene::Hand& hand) {
+           return reads(hand.tool->mesh.file) || (hand.device && reads(hand.device->file));
+         });
 }
 
 /// Checks the memory estimate, after meshing and before assembly: the meshes are small, the assembled system
@@ -234,7 +244,7 @@ void at_place(const World& world, const std::string& at, const std::string& who,
   } catch (const Error& e) {
     const std::string message = e.what();
     const bool names_who = who.empty() || message.starts_with(who);
-    if (begins_with_file(message, world.description.path)) throw;
+    if (begins_with_file(message, world)) throw;
     fail("{}: {}{}", scene::place_of(world.description, at), names_who ? "" : who + ": ", message);
   }
 }

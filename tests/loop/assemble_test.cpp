@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "core/counters.h"
 #include "loop/scene_checks.h"
 #include "loop/small_scenes.h"
@@ -39,6 +42,24 @@ TEST(Assemble, MaterialNamesTheConstitutiveLaw) {
   d.bodies[0].volumetric = Volumetric::kNodal;
   d.bodies[0].poissons_ratio = 0.2;  // no share is left for the averages; "nodal" is reported all the same
   expect_refused(d, {"body \"block\"", "volumetric", "stable_neo_hookean", "use \"element\""});
+}
+
+// A message names the key even where the working folder has a file named like the message's first words.
+TEST(Assemble, LocatesErrorsWhateverFilesThereAre) {
+  scene::Description d = held_block();
+  d.path = "block.toml";
+  d.bodies[0].material = "no-such-law";
+  const std::string message = refusal(d), words = "body \"block\"";
+  ASSERT_TRUE(message.starts_with("block.toml")) << message;
+  ASSERT_NE(message.find(words + ":"), std::string::npos) << message;
+  const std::filesystem::path before = std::filesystem::current_path(),
+                              folder = testing::TempDir() + "named-like-a-message";
+  std::filesystem::create_directories(folder);
+  std::filesystem::current_path(folder);
+  std::ofstream(words) << "no mesh";
+  EXPECT_EQ(refusal(d), message);
+  std::filesystem::current_path(before);
+  std::filesystem::remove_all(folder);
 }
 
 // A block that sags by a tenth under its weight: other methods find the same equilibrium of one law, and
