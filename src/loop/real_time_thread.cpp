@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "palpate/core/workers.h"
+
 namespace palpate::loop {
 namespace {
 
@@ -87,13 +89,36 @@ void claim_real_time(RealTimeResult& out) {
 
 void release_memory() { munlockall(); }
 
-RealTimeClaim::RealTimeClaim(RealTimeResult& out) {
+// A helper without a processor stops the loop at its next barrier. Where SCHED_FIFO is not permitted helpers
+// stay as they are.
+void RealTimeClaim::schedule_helpers(int policy, const sched_param& parameters) const {
+  if (threads_ < 2) return;
+  struct Context {
+    pthread_t caller;
+    int policy;
+    const sched_param& parameters;
+  } context{pthread_self(), policy, parameters};
+  workers::run_together(
+      threads_,
+      [](void* of, int, int) {
+        const Context& c = *static_cast<Context*>(of);
+        if (!pthread_equal(pthread_self(), c.caller))
+          pthread_setschedparam(pthread_self(), c.policy, &c.parameters);
+      },
+      &context);
+}
+
+RealTimeClaim::RealTimeClaim(RealTimeResult& out, int threads) : threads_(threads) {
   pthread_getaffinity_np(pthread_self(), sizeof processors_, &processors_);
   pthread_getschedparam(pthread_self(), &policy_, &parameters_);
+  sched_param helpers{};
+  helpers.sched_priority = kPriority - 1;
+  schedule_helpers(SCHED_FIFO, helpers);
   claim_real_time(out);
 }
 
 RealTimeClaim::~RealTimeClaim() {
+  schedule_helpers(policy_, parameters_);
   pthread_setschedparam(pthread_self(), policy_, &parameters_);
   pthread_setaffinity_np(pthread_self(), sizeof processors_, &processors_);
   release_memory();

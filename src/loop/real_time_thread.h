@@ -24,16 +24,21 @@ void claim_real_time(RealTimeResult& out);
 /// Unlocks the memory of the process.
 void release_memory();
 
-/// Prepares the calling thread as claim_real_time(), until its end: then scheduling and processors of the
-/// thread are as before, and memory is unlocked.
+/// Prepares the calling thread as claim_real_time(), and the threads that its loops share with it by
+/// SCHED_FIFO of a lower priority, until its end: then scheduling and processors of the threads are as
+/// before, and memory is unlocked.
 class RealTimeClaim {
  public:
-  explicit RealTimeClaim(RealTimeResult& out);
+  /// @param threads  number of threads of the loops, including the calling one
+  RealTimeClaim(RealTimeResult& out, int threads);
   ~RealTimeClaim();
   RealTimeClaim(const RealTimeClaim&) = delete;
   RealTimeClaim& operator=(const RealTimeClaim&) = delete;
 
  private:
+  void schedule_helpers(int policy, const sched_param& parameters) const;
+
+  int threads_;
   cpu_set_t processors_{};
   sched_param parameters_{};
   int policy_ = 0;

@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/late_helpers.h"
+#include "helper_watch.h"
 #include "palpate/device/limiter.h"
 #include "real_time_run.h"
 #include "real_time_thread.h"
 #include "single_rate.h"
+#include "tick_pace.h"
 #include "timing_series.h"
 
 namespace palpate::loop {
@@ -20,12 +24,11 @@ namespace {
 //     due(i)   sample handle, step tools and bodies, wrench to the device
 //              then, in the rest of the tick, the observers and the contact query where one is due
 //
-// A tick that begins a tick or more after its due time is late because its predecessors took too long, or
-// because the system gave the processor to others. Its step covers all ticks that have become due, of which
-// it is the last: an implicit step of several ticks costs the same as one of a single tick, so the work per
-// second of simulated time decreases until the loop keeps up, and each wrench belongs to the newest handle.
-// The ticks before it are skipped and counted. Beyond kFallTime (limiter.h) the clock is restarted instead,
-// as in the partitioned scheme (real_time_run.cpp).
+// A tick that begins after its due time is late because its predecessors took too long, or because the system
+// gave the processor to others. Later steps make up for it, or a step covers several ticks (tick_pace.h): an
+// implicit step of several ticks costs about as much as one of a single tick. The ticks before the last one
+// of a step are skipped and counted. Beyond kFallTime (limiter.h) the clock is restarted instead, as in the
+// partitioned scheme (real_time_run.cpp).
 constexpr std::int64_t kStall = std::int64_t(1e9 * device::kFallTime);  // [ns]
 
 /// Time from readiness to the first tick [ns].
@@ -62,7 +65,7 @@ class SingleRateRealTime {
     for (HapticLoop& loop : loops_) loop.start(0.0);
     bodies_.start();
     ticks_.start();
-    const RealTimeClaim claim(out_);
+    const RealTimeClaim claim(out_, world_.description.integrator.threads);
     start_ns_ = now_ns() + kLead;
     tick_by_the_clock();
     for (HapticLoop& loop : loops_) loop.end();
@@ -83,27 +86,34 @@ class SingleRateRealTime {
 
   void tick_by_the_clock() {
     std::int64_t woke_before = start_ns_;
+    HelperWatch helpers;
+    TickPace pace(tick_ns_, std::max(1L, kStall / tick_ns_));
     for (long done = 0; done < count_;) {
-      const long next = done + 1;
+      const long next = std::min(count_, done + pace.stride());
       const bool paused = hold_while_paused();
       sleep_until_ns(start_ns_ + next * tick_ns_);
+      std::optional<workers::Alone> alone;
+      if (helpers.alone()) alone.emplace();
+      const long waits = workers::long_waits();
       result_.stopped = options_.stop && options_.stop->load(std::memory_order_relaxed);
       if (result_.stopped) return;
       const std::int64_t woke = now_ns(), late = woke - start_ns_ - next * tick_ns_;
-      const long behind = static_cast<long>(late / tick_ns_);
-      const long left_out = late > kStall ? behind : 0;  // the clock is restarted
+      const long left_out = late > kStall ? late / tick_ns_ : 0;  // the clock is restarted
       start_ns_ += left_out * tick_ns_;
-      const long skipped = left_out > 0 ? 0 : std::min(behind, count_ - next);
-      ticks_.mark(woke - std::exchange(woke_before, woke) > tick_ns_ + kStall || paused, left_out);
-      ticks_.tick(ticks_.time_of(done), ticks_.time_of(next + skipped));
+      const long last = left_out > 0 ? next : std::min(count_, next + pace.begin(late));
+      ticks_.mark(woke - std::exchange(woke_before, woke) > (next - done) * tick_ns_ + kStall || paused,
+                  left_out);
+      ticks_.tick(ticks_.time_of(done), ticks_.time_of(last));
       if (bodies_.ended()) return;
-      note(late, left_out, skipped, now_ns() - woke);
+      note(late, left_out, last - done - 1, now_ns() - woke);
       const int per_period = ticks_.ticks_per_period();
-      const long before = std::exchange(done, next + skipped);
+      const long before = std::exchange(done, last);
       const bool closes = done / per_period > before / per_period || done == count_;
       const double now = ticks_.time_of(done);
       if (closes) bodies_.close_period(now);
       if (done < count_) ticks_.query_if_due(now, ticks_.time_of((done / per_period + 1) * per_period));
+      helpers.end(workers::long_waits() - waits);
+      pace.end(now_ns() - woke);
     }
   }
 

@@ -18,8 +18,7 @@ std::vector<std::string> clock_remarks(const loop::RunResult& result, const std:
   add("real time: {} of {} ticks late by a tick or more; bodies and contact at {:.1f} Hz (target {:g} Hz)",
       clock.missed_ticks, clock.timed_ticks, clock.exchanges_per_s(), 1.0 / clock.period_s);
   if (clock.skipped_ticks > 0)
-    add("real time: {} ticks were skipped, because a step took longer than a tick; the next step covered "
-        "them",
+    add("real time: {} ticks were skipped, because steps took longer than ticks; longer steps covered them",
         clock.skipped_ticks);
   if (clock.left_out_ticks > 0)
     add("real time: the clock was restarted after ticks that were more than {:g} ms late; {} ticks were "
