@@ -129,6 +129,35 @@ TEST(LinearlyImplicitEuler, StepsTheSameWithRigidBlocks) {
     }
 }
 
+// A contact query leaves the bodies' part of the matrix and the history of the steps as they are; a change of
+// the state does not.
+TEST(LinearlyImplicit, KeepsItsMatrixOverContactQueries) {
+  constexpr double kStep = 1e-3;
+  for (const std::string name : {"linearly-implicit-euler", "linearly-implicit-bdf2"}) {
+    PressedBeam queried, other;
+    const IntegratorSpec spec{
+        .name = name, .step_s = kStep, .linear_solver = "pcg-single", .linear_rtol = 1e-3};
+    const auto stepper = integrate::make_stepper(queried.system, queried.state, spec);
+    const auto without = integrate::make_stepper(other.system, other.state, spec);
+    const VecX start = other.state.q();
+    for (int k = 1; k <= 16; ++k) {
+      if (k > 8) {
+        queried.contact->refresh(queried.state.view());
+        stepper->reinit(ReinitReason::kContactRefreshed);
+      }
+      ASSERT_TRUE(stepper->advance_to(kStep * k).ok());
+      ASSERT_TRUE(without->advance_to(kStep * k).ok());
+    }
+    const long matrices = stepper->counters().tangent_evaluations;
+    EXPECT_LE(matrices, without->counters().tangent_evaluations) << name;
+    EXPECT_LT(matrices, 12) << name;
+    EXPECT_LT((queried.state.q() - other.state.q()).norm(), 1e-9 * (other.state.q() - start).norm()) << name;
+    stepper->reinit(ReinitReason::kStateChanged);
+    ASSERT_TRUE(stepper->advance_to(kStep * 17).ok());
+    EXPECT_GT(stepper->counters().tangent_evaluations, matrices) << name;
+  }
+}
+
 TEST(LinearlyImplicitEuler, AllocatesNothingOnceWarm) {
 #if PALPATE_CAN_COUNT
   for (const std::string name : {"pcg-single", "pcg-two-level", "auto"}) {

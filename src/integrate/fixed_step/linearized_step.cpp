@@ -33,45 +33,39 @@ LinearizedStep::LinearizedStep(dynamics::System& system, std::unique_ptr<dynamic
       solver_(std::move(solver), spec),
       mixed_(dynamic_cast<dynamics::MixedPrecisionSolver*>(&solver_.chosen())),
       solves_(dynamic_cast<dynamics::StepSolves*>(&solver_.chosen())),
+      tolerance_(dynamic_cast<dynamics::EnergyTolerance*>(&solver_.chosen())),
       fused_(system),
       roughly_(std::min(kRoughly, spec.linear_rtol / kLastImprovement)) {}
 
-/// Terms whose force depends on the end of the step. begin_step() and end_step() are called by constructor
-/// and destructor.
-class LinearizedStep::Repeats {
- public:
-  /// @param terms  scratch, so that a step allocates no memory
-  Repeats(const dynamics::System& system, const dynamics::StateView& at,
-          std::vector<dynamics::RepeatedStepTerm*>& terms)
-      : at_(at), terms_(terms) {
-    terms_.clear();
-    for (const auto& term : system.terms())
-      if (auto* const repeated = dynamic_cast<dynamics::RepeatedStepTerm*>(term.get());
-          repeated && repeated->begin_step(at))
-        terms_.push_back(repeated);
-  }
-  ~Repeats() {
-    for (dynamics::RepeatedStepTerm* term : terms_) term->end_step();
-  }
-  Repeats(const Repeats&) = delete;
-  Repeats& operator=(const Repeats&) = delete;
-  bool any() const { return !terms_.empty(); }
-  /// Returns whether the guesses of all terms have converged.
-  bool improve(const VecX& moved, const VecX& change) {
-    bool done = true;
-    for (dynamics::RepeatedStepTerm* term : terms_) done = term->improve_step(at_, moved, change) && done;
-    return done;
-  }
+LinearizedStep::Repeats::Repeats(LinearizedStep& step, const dynamics::StateView& at)
+    : at_(at), terms_(step.repeated_terms_) {
+  terms_.clear();
+  for (const auto& term : step.system_.terms())
+    if (auto* const repeated = dynamic_cast<dynamics::RepeatedStepTerm*>(term.get());
+        repeated && repeated->begin_step(at))
+      terms_.push_back(repeated);
+}
 
- private:
-  const dynamics::StateView& at_;
-  std::vector<dynamics::RepeatedStepTerm*>& terms_;
-};
+LinearizedStep::Repeats::~Repeats() {
+  for (dynamics::RepeatedStepTerm* term : terms_) term->end_step();
+}
+
+bool LinearizedStep::Repeats::improve(const VecX& moved, const VecX& change) {
+  bool done = true;
+  for (dynamics::RepeatedStepTerm* term : terms_) done = term->improve_step(at_, moved, change) && done;
+  return done;
+}
 
 StepStatus LinearizedStep::solve(const Equations& e, VecX& du, dynamics::StepperCounters& counters) {
+  Repeats repeats(*this, e.at);
+  return solve(e, repeats, du, counters);
+}
+
+StepStatus LinearizedStep::solve(const Equations& e, Repeats& repeats, VecX& du,
+                                 dynamics::StepperCounters& counters) {
   counters_ = &counters;
   known_indefinite_ = false;
-  Repeats repeats(system_, e.at, repeated_terms_);
+  allow_rounding(e);
   repeats_ = repeats.any();
   if (repeats_ && solve_repeatedly(e, du, repeats)) return StepStatus::kOk;
   for (;;) {
@@ -117,6 +111,16 @@ bool LinearizedStep::solve_repeatedly(const Equations& e, VecX& du, Repeats& rep
 bool LinearizedStep::assemble_beside(const Equations& e, dynamics::ZeroRowSumMatrix& A) {
   const ScopedTimer timer(counters_->tangent_s);
   return fused_.assemble_beside(e, A);
+}
+
+void LinearizedStep::allow_rounding(const Equations& e) {
+  if (!tolerance_ || e.h == rounding_h_) return;
+  rounding_h_ = e.h;
+  double size = 0.0;
+  for (const dynamics::Block& block : e.at.layout->blocks)
+    if (block.kind == dynamics::BlockKind::kNodes) size = std::max(size, block.q_scale);
+  // nodal_mass() has three equal entries per node
+  tolerance_->allow_error(0x1p-52 * size * std::sqrt(system_.nodal_mass().sum() / 3.0) / e.h);
 }
 
 StepStatus LinearizedStep::solve_once(const Equations& e, VecX& du) {

@@ -1,4 +1,5 @@
 #pragma once
+#include "dynamics/energy_tolerance.h"
 #include "dynamics/mixed_precision_step.h"
 #include "integrate/fixed_step/fused_equations.h"
 #include "integrate/step_solver.h"
@@ -22,6 +23,12 @@ namespace palpate::integrate {
 /// The first two require the capabilities MixedPrecisionSolver of the chosen solver and FusedStepTerm of the
 /// system's terms; where these are missing, or do not reach the tolerance, the next method is used.
 ///
+/// Tolerance: relative to the change du, not to the velocity u1, as errors of all steps add up: an error of
+/// rtol |du| per step is one of rtol in the force. At rest du is rounding, and so is the residual, so that no
+/// relative tolerance can be met there. Errors below the rounding of the positions are therefore accepted,
+///     |e|_A <= eps |q| sqrt(m) / h,   which contains h sqrt(mean of |e|^2) <= eps |q|,
+/// eps = 2^-52, m the mass of the nodes, |q| the size of the bodies.
+///
 /// With a projected matrix, K_p, the right-hand side uses K_p as well, so that the step is
 ///     (M + h D + h^2 K_p) u1 = M u0 + h f + ...,
 /// the step of a force model without negative curvature, which cannot gain energy. With K in the right-hand
@@ -44,9 +51,31 @@ class LinearizedStep {
   LinearizedStep(dynamics::System& system, std::unique_ptr<dynamics::LinearSolver> solver,
                  const IntegratorSpec& spec);
 
+  /// Terms whose force depends on the end of the step that begins at a state (RepeatedStepTerm). begin_step()
+  /// and end_step() are called by constructor and destructor. One at a time.
+  class Repeats {
+   public:
+    /// @param at  must outlive this object
+    Repeats(LinearizedStep& step, const dynamics::StateView& at);
+    ~Repeats();
+    Repeats(const Repeats&) = delete;
+    Repeats& operator=(const Repeats&) = delete;
+    bool any() const { return !terms_.empty(); }
+    /// Takes the end of the step that a solve found, as RepeatedStepTerm::improve_step(); returns whether the
+    /// guesses of all terms have converged.
+    bool improve(const VecX& moved, const VecX& change);
+
+   private:
+    const dynamics::StateView& at_;
+    std::vector<dynamics::RepeatedStepTerm*>& terms_;  ///< Scratch, so that a step allocates no memory.
+  };
+
   /// Solves for du. Returns kNotFinite where the right-hand side is not finite, kSolverFailed where the
   /// matrix is singular or not finite.
   dynamics::StepStatus solve(const LinearizedEquations& equations, VecX& du,
+                             dynamics::StepperCounters& counters);
+  /// Does the same where the caller has begun the step, at the state of the equations.
+  dynamics::StepStatus solve(const LinearizedEquations& equations, Repeats& repeats, VecX& du,
                              dynamics::StepperCounters& counters);
   /// Discards the lagged matrix: no later step is solved by a matrix made before this call.
   void forget() { lagged_h_ = 0.0; }
@@ -54,7 +83,6 @@ class LinearizedStep {
 
  private:
   class NodalResidual;
-  class Repeats;
   using Equations = LinearizedEquations;
 
   bool solve_repeatedly(const Equations& e, VecX& du, Repeats& repeats);
@@ -70,6 +98,7 @@ class LinearizedStep {
   bool assemble_fused(const Equations& e, dynamics::ZeroRowSumMatrix& A, bool keep);
   bool assemble_beside(const Equations& e, dynamics::ZeroRowSumMatrix& A);
   std::optional<dynamics::SolveStatus> refine(const Equations& e, VecX& du);
+  void allow_rounding(const Equations& e);
   bool evaluate_right_hand_side(const Equations& e);
   void evaluate_residual(const Equations& e, const VecX& du, VecX& r);
   double square_norm(const Equations& e, const VecX& u);
@@ -78,6 +107,7 @@ class LinearizedStep {
   StepSolver solver_;
   dynamics::MixedPrecisionSolver* mixed_;  ///< Capability of the chosen solver; null: it lacks it.
   dynamics::StepSolves* solves_;           ///< As above.
+  dynamics::EnergyTolerance* tolerance_;   ///< As above.
   FusedEquations fused_;
   /// Tolerance of solves that another solve of the same step continues: error relative to the change of the
   /// solution.
@@ -89,8 +119,9 @@ class LinearizedStep {
   double speed_ = 0.0;             ///< u1.M u1 [J].
   bool known_indefinite_ = false;  ///< The matrix of the current solve is known to be indefinite.
   std::vector<dynamics::RepeatedStepTerm*> repeated_terms_;  ///< Scratch.
-  bool repeats_ = false;   ///< The solve may be repeated from the same state.
-  double lagged_h_ = 0.0;  ///< Step of the mixed-precision matrix that the solver keeps; 0: none.
+  bool repeats_ = false;     ///< The solve may be repeated from the same state.
+  double rounding_h_ = 0.0;  ///< Step for which the solver has an absolute tolerance.
+  double lagged_h_ = 0.0;    ///< Step of the mixed-precision matrix that the solver keeps; 0: none.
   std::uint64_t lagged_pattern_ = 0;
 };
 

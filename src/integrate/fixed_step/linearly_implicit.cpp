@@ -4,7 +4,6 @@
 #include "integrate/fixed_step/fixed_step.h"
 #include "integrate/fixed_step/linearized_step.h"
 #include "integrate/make.h"
-#include "palpate/dynamics/repeated_step.h"
 
 namespace palpate::integrate {
 namespace {
@@ -57,37 +56,25 @@ class LinearlyImplicit final : public FixedStep {
 
  private:
   Attempt attempt(double h, double t1) override {
-    if (!two_steps_) return step_of_order_1(h, t1);
-    u_start_ = state_.u();
-    if (has_friction()) {
-      const Attempt out = step_of_order_1(h, t1);
-      if (out.status == StepStatus::kOk) theta_ = shift_ + h * du_;
+    const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
+    if (LinearizedStep::Repeats friction(equations_, at); !two_steps_ || friction.any()) {
+      if (two_steps_) u_start_ = state_.u();
+      const Attempt out = step_of_order_1(h, at, friction);
+      if (two_steps_ && out.status == StepStatus::kOk) theta_ = shift_ + h * du_;
       return out;
     }
+    u_start_ = state_.u();
     const bool goes_on = theta_before_.size() == layout().u_size && h <= kLargestRatio * h_before_;
     return goes_on ? step_of_order_2(h, t1) : start(h, t1);
   }
 
-  /// Returns whether friction that is evaluated at the end of the step acts at the State.
-  bool has_friction() {
-    const StateView at = now();
-    bool out = false;
-    for (const auto& term : system_.terms())
-      if (auto* const repeated = dynamic_cast<RepeatedStepTerm*>(term.get());
-          repeated && repeated->begin_step(at)) {
-        repeated->end_step();
-        out = true;
-      }
-    return out;
-  }
-
-  Attempt step_of_order_1(double h, double t1) {
-    predict_drives(t1, h);
-    const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
-    const Attempt solved = solve({at, h, shift_, change_, !drives_speed_up_, is_proportional_});
+  Attempt step_of_order_1(double h, const StateView& at, LinearizedStep::Repeats& friction) {
+    predict_drives(at.time, h);
+    const LinearizedEquations equations{at, h, shift_, change_, !drives_speed_up_, is_proportional_};
+    const Attempt solved = checked(equations_.solve(equations, friction, du_, counters_));
     if (solved.status != StepStatus::kOk) return solved;
     move(h);
-    system_.impose(layout(), t1, q1_.data(), u1_.data());
+    system_.impose(layout(), at.time, q1_.data(), u1_.data());
     return solved;
   }
 
@@ -123,7 +110,8 @@ class LinearlyImplicit final : public FixedStep {
       drives_speed_up = drives_speed_up || change_[dof] != 0.0;
     }
     const StateView at = state_.view(t, q_predicted_.data(), v_.data());
-    const Attempt solved = solve({at, g, shift_, change_, !drives_speed_up});
+    const Attempt solved =
+        checked(equations_.solve({at, g, shift_, change_, !drives_speed_up}, du_, counters_));
     if (solved.status != StepStatus::kOk) return solved;
     u1_ += du_;
     displace(g, t, u1_, q1_);
@@ -131,8 +119,7 @@ class LinearlyImplicit final : public FixedStep {
     return solved;
   }
 
-  Attempt solve(const LinearizedEquations& equations) {
-    const StepStatus status = equations_.solve(equations, du_, counters_);
+  Attempt checked(StepStatus status) const {
     if (status == StepStatus::kNotFinite) return {.status = status, .what = "the force is not finite"};
     if (status != StepStatus::kOk)
       return {.status = status, .what = "the step matrix is singular or not finite"};
@@ -203,7 +190,10 @@ class LinearlyImplicit final : public FixedStep {
     u_before_.swap(u_start_);
     h_before_ = h;
   }
-  void forget(ReinitReason) override {
+  /// A contact query changes neither the bodies' part of the matrix nor the state. Its part is assembled in
+  /// each step.
+  void forget(ReinitReason reason) override {
+    if (reason == ReinitReason::kContactRefreshed) return;
     equations_.forget();
     theta_before_.resize(0);
   }
