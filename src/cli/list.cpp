@@ -153,7 +153,7 @@ void add_list(CLI::App& app, Invocation& invocation) {
   auto arguments = std::make_shared<ListArguments>();
   command->add_option(
       "WHAT", arguments->what,
-      "integrators, linear-solvers, materials, tool-integrators, obstacles, contact-methods, "
+      "integrators, linear-solvers, materials, laws, tool-integrators, obstacles, contact-methods, "
       "contact-springs, contact-laws, generators, devices, device-profiles, motions, parts, cases, scenes; "
       "default: all of these; or keys: every key of a scene with its unit, range, default and meaning; or "
       "study-keys: the keys of a study");

@@ -28,9 +28,9 @@ namespace {
 
 fem::SoftBodyOptions options_of(const SoftBodySpec& spec, const fem::Materials& materials) {
   fem::SoftBodyOptions options;
-  options.law = spec.material;
+  options.law = spec.law;
   options.tangent = spec.tangent;
-  fem::check_law(spec.material, options.tangent, spec.volumetric == Volumetric::kNodal,
+  fem::check_law(spec.law, options.tangent, spec.volumetric == Volumetric::kNodal,
                  fmt::format("body \"{}\"", spec.name));
   options.full_damping_tangent = spec.full_damping_tangent;
   if (spec.volumetric == Volumetric::kNodal) {

@@ -1,4 +1,7 @@
 #include "palpate/loop/load.h"
+
+#include <fmt/format.h>
+
 #include "contact/methods.h"
 #include "loop/registries.h"
 #include "palpate/contact/obstacle.h"
@@ -8,6 +11,7 @@
 #include "palpate/device/profile.h"
 #include "palpate/device/registry.h"
 #include "palpate/fem/laws.h"
+#include "palpate/fem/material_presets.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "palpate/mesh/generators.h"
@@ -31,6 +35,23 @@ std::vector<Kind> kinds_of(const Registry& registry) {
 KindTable mesh_kinds(const char* table, std::vector<Kind> generators) {
   generators.push_back({"file", mesh::file_keys()});
   return {.table = table, .selector = "generator", .kinds = std::move(generators), .alternative = "file"};
+}
+
+/// Returns the presets of a material, with the values that they give to the keys of the table.
+KindTable material_kinds(const char* table) {
+  KindTable out{.table = table, .selector = "material", .kinds = {}};
+  for (const fem::MaterialPreset& preset : fem::material_presets()) {
+    const fem::Material& m = preset.material;
+    out.kinds.push_back({.name = preset.name,
+                         .values = {{"youngs_modulus_pa", m.youngs_modulus},
+                                    {"poissons_ratio", m.poissons_ratio},
+                                    {"density_kg_m3", m.density},
+                                    {"stiffness_damping_s", m.stiffness_damping}}});
+  }
+  for (const auto& law : fem::law_registry())
+    out.absent.push_back(
+        {law.name, fmt::format("is a constitutive law: write law = \"{}\" in [[body]]", law.name)});
+  return out;
 }
 
 /// Adds the tables of [tool] and [device], or, with the prefix "hand.", of each [[hand]].
@@ -75,9 +96,10 @@ scene::Kinds make_kinds() {
        .kinds = kinds_of(linear::linear_solver_registry()),
        .default_kind = [](const Description& d) { return integrate::linear_solver_of(d.integrator); }});
   out.push_back({.table = "body",
-                 .selector = "material",
+                 .selector = "law",
                  .kinds = kinds_of(fem::law_registry()),
-                 .default_kind = [](const Description&) { return SoftBodySpec{}.material; }});
+                 .default_kind = [](const Description&) { return SoftBodySpec{}.law; }});
+  for (const char* table : {"body", "body.region"}) out.push_back(material_kinds(table));
   out.push_back(mesh_kinds("body.mesh", kinds_of(mesh::tet_generators())));
   for (const char* table : {"tool.mesh", "hand.tool.mesh"})
     out.push_back(mesh_kinds(table, kinds_of(mesh::surface_generators())));
@@ -129,10 +151,7 @@ const scene::Kinds& kinds() {
   return kinds;
 }
 
-namespace {
-
-/// Replaces "model:NAME" by the path of the cached file.
-scene::Description with_models(scene::Description d) {
+scene::Description with_cached_models(scene::Description d) {
   const auto take = [](MeshSpec& mesh) {
     if (const std::string name = store::model_of(mesh.file); !name.empty())
       mesh.file = store::cached_model(name);
@@ -143,15 +162,13 @@ scene::Description with_models(scene::Description d) {
   return d;
 }
 
-}  // namespace
-
 scene::Description load(const std::string& path, const std::vector<std::string>& overrides) {
-  return with_models(scene::load(path, overrides, kinds()));
+  return with_cached_models(scene::load(path, overrides, kinds()));
 }
 
 scene::Description parse(const std::string& text, const std::string& path,
                          const std::vector<std::string>& overrides) {
-  return with_models(scene::parse(text, path, overrides, kinds()));
+  return with_cached_models(scene::parse(text, path, overrides, kinds()));
 }
 
 }  // namespace palpate::loop

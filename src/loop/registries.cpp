@@ -11,6 +11,7 @@
 #include "palpate/device/profile.h"
 #include "palpate/device/registry.h"
 #include "palpate/fem/laws.h"
+#include "palpate/fem/material_presets.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/mesh/generators.h"
 #include "palpate/tool/tool.h"
@@ -52,6 +53,19 @@ std::vector<Choice> stepper_choices() {
   return out;
 }
 
+/// Returns the materials; the summary is preceded by their values.
+std::vector<Choice> material_choices() {
+  std::vector<Choice> out;
+  for (const fem::MaterialPreset& preset : fem::material_presets()) {
+    const fem::Material& m = preset.material;
+    out.push_back({preset.name, fmt::format("E = {:g} kPa, nu = {:g}, {:g} kg/m^3, stiffness damping {:g} "
+                                            "ms: {}. Source: {}",
+                                            1e-3 * m.youngs_modulus, m.poissons_ratio, m.density,
+                                            1e3 * m.stiffness_damping, preset.summary, preset.source)});
+  }
+  return out;
+}
+
 std::vector<Choice> part_choices() {
   const std::string tool =
       tool::available() ? "compiled in"
@@ -83,7 +97,9 @@ std::vector<ChoiceList> registries() {
       {"integrators", "time integrators of soft bodies: [integrator] name, --integrator", stepper_choices()},
       {"linear-solvers", "linear solvers of implicit integrators: [integrator] linear_solver",
        choices(linear::linear_solver_registry())},
-      {"materials", "constitutive laws: [[body]] material", choices(fem::law_registry())},
+      {"materials", "materials with published values: [[body]] and [[body.region]] material",
+       material_choices()},
+      {"laws", "constitutive laws: [[body]] law", choices(fem::law_registry())},
       {"tool-integrators", "integrators of the haptic ticks: [tool] integrator", tool_steppers()},
       {"obstacles", "rigid shapes in the world: [[obstacle]] type", named(contact::obstacle_registry())},
       {"contact-methods", "methods of gap computation: [[contact]] method",

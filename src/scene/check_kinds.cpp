@@ -198,6 +198,28 @@ std::optional<Description> read_original(const Document& document) {
 
 }  // namespace
 
+// A name that is not known is rejected here: without its values, the message would be about a missing key.
+void fill_in_values(Document& document, const Kinds& kinds) {
+  for (const KindTable& table : kinds) {
+    if (std::all_of(table.kinds.begin(), table.kinds.end(), [](const Kind& k) { return k.values.empty(); }))
+      continue;
+    std::vector<Instance> found;
+    find_instances(document.root, table.table, "", "", found);
+    for (const Instance& at : found) {
+      const toml::node* node = at.table->get(table.selector);
+      const auto name = node ? node->value<std::string>() : std::nullopt;
+      if (!name || name->empty()) continue;
+      const auto kind = std::find_if(table.kinds.begin(), table.kinds.end(),
+                                     [&](const Kind& one) { return one.name == *name; });
+      if (kind == table.kinds.end())
+        refuse_name(table, location(node->source()), at.where, table.selector, *name);
+      toml::table& own = *toml::at_path(document.root, at.path).as_table();
+      for (const auto& [key, value] : kind->values)
+        if (const double* number = std::get_if<double>(&value)) own.emplace(key, *number);
+    }
+  }
+}
+
 std::vector<DroppedKey> check_kinds(const Document& document, const Description& description,
                                     const Kinds& kinds) {
   std::vector<DroppedKey> left;

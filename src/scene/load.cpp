@@ -12,6 +12,7 @@ namespace palpate::scene {
 Description parse(const std::string& text, const std::string& path, const std::vector<std::string>& overrides,
                   const Kinds& kinds) {
   Document document = parse_document(text, path, overrides);
+  fill_in_values(document, kinds);
   Description description;
   read_table(document.root, "", description_keys(), description);
   std::vector<std::string> not_carried_over;

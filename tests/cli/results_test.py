@@ -178,7 +178,8 @@ class Results(Cli):
     def test_lists(self):
         everything = self.good("list")
         for what, member in {"integrators": "cvode-bdf", "linear-solvers": "cholmod",
-                             "materials": "stable_neo_hookean", "tool-integrators": "simbody-cpodes",
+                             "materials": "liver", "laws": "stable_neo_hookean",
+                             "tool-integrators": "simbody-cpodes",
                              "obstacles": "cylinder", "contact-methods": "image", "generators": "tet",
                              "contact-springs": "per_point", "contact-laws": "hunt_crossley",
                              "devices": "script",

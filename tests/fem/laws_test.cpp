@@ -375,6 +375,6 @@ TEST(LawRegistry, NamesTheLawsAndRefusesOthersByTheNearest) {
   };
   expect_contains(
       make("stable-neo-hookean"),
-      "body \"liver\": unknown material \"stable-neo-hookean\" (did you mean \"stable_neo_hookean\"?)");
+      "body \"liver\": unknown law \"stable-neo-hookean\" (did you mean \"stable_neo_hookean\"?)");
   expect_contains(make("ogden"), "(known: corotational, stable_neo_hookean)");
 }

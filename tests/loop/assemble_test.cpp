@@ -33,9 +33,9 @@ TEST(Assemble, NamesThatNoRegistryKnowsAreRefusedWithTheNearest) {
 
 TEST(Assemble, MaterialNamesTheConstitutiveLaw) {
   scene::Description d = held_block();
-  d.bodies[0].material = "stable-neo-hookean";
-  expect_refused(d, {"body \"block\"", "unknown", "material", "stable-neo-hookean", "stable_neo_hookean"});
-  d.bodies[0].material = "stable_neo_hookean";
+  d.bodies[0].law = "stable-neo-hookean";
+  expect_refused(d, {"body \"block\"", "unknown", "law", "stable-neo-hookean", "stable_neo_hookean"});
+  d.bodies[0].law = "stable_neo_hookean";
   d.bodies[0].tangent = fem::Tangent::kWarped;
   expect_refused(d, {"body \"block\"", "warped", "stable_neo_hookean", "use \"exact\" or \"projected\""});
   d.bodies[0].tangent = fem::Tangent::kExact;
@@ -72,7 +72,7 @@ TEST(Assemble, EveryKindOfIntegratorRunsEveryMaterial) {
     for (const char* integrator : {"linearly-implicit-euler", "cvode-bdf", "kinsol-static"}) {
       scene::Description d = held_block();
       d.gravity_m_s2 = Vec3(0, 0, -100.0);
-      d.bodies[0].material = material;
+      d.bodies[0].law = material;
       d.bodies[0].youngs_modulus_pa = 5e3;
       d.bodies[0].stiffness_damping_s = 2e-2;
       d.integrator.name = integrator;

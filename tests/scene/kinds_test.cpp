@@ -6,6 +6,7 @@
 
 #include "loop/registries.h"
 #include "palpate/core/error.h"
+#include "palpate/fem/material_presets.h"
 #include "palpate/loop/load.h"
 #include "scene/scene_texts.h"
 
@@ -112,6 +113,27 @@ TEST(Kinds, UnknownNamesAreRefusedAtTheirLocation) {
   EXPECT_NE(refusal(kBlock, {"body.0.material=steel"}).find("material = \"steel\" is not known"),
             std::string::npos);
   EXPECT_NE(refusal(scene_texts::kWhole, {"device.type=scirpt"}).find("did you mean \"script\"?"),
+            std::string::npos);
+}
+
+TEST(Kinds, AMaterialGivesTheValuesThatTheTableDoesNotHave) {
+  std::string text = kBlock;
+  const std::string modulus = "youngs_modulus_pa = 1e4\n";
+  text.replace(text.find(modulus), modulus.size(), "material = \"liver\"\ndensity_kg_m3 = 900.0\n");
+  const palpate::SoftBodySpec body = parse(text, "s.toml").bodies.at(0);
+  const palpate::fem::Material& liver = palpate::fem::material_preset("liver").material;
+  EXPECT_EQ(body.material, "liver");
+  EXPECT_EQ(body.youngs_modulus_pa, liver.youngs_modulus);
+  EXPECT_EQ(body.poissons_ratio, liver.poissons_ratio);
+  EXPECT_EQ(body.stiffness_damping_s, liver.stiffness_damping);
+  EXPECT_EQ(body.density_kg_m3, 900.0) << "a key beside the material takes precedence";
+  EXPECT_EQ(parse(text, "s.toml", {"body.0.youngs_modulus_pa=5e3"}).bodies[0].youngs_modulus_pa, 5e3);
+  EXPECT_EQ(parse(text, "s.toml", {"body.0.material=\"fat\""}).bodies[0].youngs_modulus_pa,
+            palpate::fem::material_preset("fat").material.youngs_modulus);
+  EXPECT_NE(refusal(kBlock, {"body.0.material=corotational"}).find("write law = \"corotational\""),
+            std::string::npos);
+  EXPECT_NE(refusal(kBlock + "[[body.region]]\nname = \"r\"\nmaterial = \"livr\"\n")
+                .find("did you mean \"liver\"?"),
             std::string::npos);
 }
 

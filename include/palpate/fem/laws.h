@@ -7,7 +7,7 @@ namespace palpate::fem {
 /// Hyperelastic, isotropic constitutive law (src/fem/law.h).
 struct Law;
 
-/// Returns the laws by the names used in SoftBodyOptions::law and in the scene's key `[[body]] material`. All
+/// Returns the laws by the names used in SoftBodyOptions::law and in the scene's key `[[body]] law`. All
 /// laws take Young's modulus and Poisson's ratio, and agree with linear elasticity at small strain.
 const Registry<const Law*>& law_registry();
 

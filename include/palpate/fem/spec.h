@@ -54,6 +54,7 @@ struct AttachmentSpec {
 /// not given are the body's.
 struct RegionSpec {
   std::string name;                           ///< name of the region, unique in the body
+  std::string material;                       ///< preset, a name in fem::material_presets(); empty: none
   Selection region = Selection::kFile;        ///< keys that define the region
   Vec3 box_min_m = Vec3::Zero();              ///< box: lower corner
   Vec3 box_max_m = Vec3::Zero();              ///< box: upper corner
@@ -100,8 +101,9 @@ struct SoftBodySpec {
   double density_kg_m3 = 1000.0;               ///< density
   double mass_damping_per_s = 0.0;             ///< mass-proportional damping, alpha
   double stiffness_damping_s = 0.0;  ///< stiffness-proportional, beta: (mu_d, lambda_d) = beta (mu, lambda)
-  MassMatrix mass = MassMatrix::kLumped;         ///< mass matrix
-  std::string material = "corotational";         ///< constitutive law, a name in fem::law_registry()
+  MassMatrix mass = MassMatrix::kLumped;  ///< mass matrix
+  std::string material;  ///< preset that set the values, a name in fem::material_presets(); empty: none
+  std::string law = "corotational";              ///< constitutive law, a name in fem::law_registry()
   fem::Tangent tangent = fem::Tangent::kExact;   ///< stiffness matrix; some laws support kWarped
   Volumetric volumetric = Volumetric::kElement;  ///< volumetric stiffness
   /// Whether to include the unsymmetric derivative of the damping force by position.

@@ -18,4 +18,8 @@ scene::Description load(const std::string& path, const std::vector<std::string>&
 scene::Description parse(const std::string& text, const std::string& path,
                          const std::vector<std::string>& overrides = {});
 
+/// Replaces each mesh file "model:NAME" of a description by the path of the model in the cache, as load()
+/// does.
+scene::Description with_cached_models(scene::Description description);
+
 }  // namespace palpate::loop

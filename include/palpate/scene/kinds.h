@@ -14,6 +14,7 @@ namespace palpate::scene {
 struct Kind {
   std::string name;                ///< Name in the scene.
   std::vector<PartKey> keys = {};  ///< Keys that it uses and some other kinds do not.
+  Settings values = {};            ///< Numbers that it gives to other keys of the table, unless a scene does.
 };
 
 /// Name that is commonly tried but does not exist, and the replacement that the message suggests.
