@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "loop/choose_scheme.h"
 #include "loop/memory.h"
+#include "loop/placing.h"
 #include "mesh/spatial_order.h"
 #include "mesh/tet_checks.h"
 #include "palpate/core/error.h"
@@ -292,6 +293,7 @@ std::unique_ptr<World> assemble(const scene::Description& description,
   assemble_bodies(*world);
   if (!description.bones.empty()) at_place(*world, "bone", "", [&] { assemble_bones(*world); });
   assemble_skeletons(*world);
+  place_tools(*world);
   const std::vector<scene::Hand> tools = scene::hands_of(world->description);
   hands.resize(tools.size());
   for (std::size_t i = 0; i < tools.size(); ++i)

@@ -6,7 +6,8 @@
 namespace palpate::loop {
 
 /// Observer that logs a warning for each [[contact]] whose penetration becomes too deep for a penalty method
-/// (PenetrationReport::too_deep), once per contact.
+/// (PenetrationReport::too_deep), once per contact. At t = 0 it throws Error instead, with the depth and the
+/// displacement that separates the two.
 class PenetrationWarning : public Observer {
  public:
   void period(World& world, double t) override { check(world, t); }

@@ -61,6 +61,16 @@ void add_ticks(const loop::RunResult& result, Remarks& out) {
                     result.outside_ticks));
 }
 
+void add_placements(const loop::World& world, Remarks& out) {
+  for (const loop::ToolPlacement& p : world.placements)
+    out.push_back(
+        fmt::format("\"{}\" placed: moved by {:.4g} mm to ({:.5g}, {:.5g}, {:.5g}) m, where it touches "
+                    "\"{}\" at ({:.5g}, "
+                    "{:.5g}, {:.5g}) m; its keyframes moved with it",
+                    p.tool, 1e3 * p.moved_m, p.position_m.x(), p.position_m.y(), p.position_m.z(), p.touched,
+                    p.touch_m.x(), p.touch_m.y(), p.touch_m.z()));
+}
+
 void add_penetrations(const loop::World& world, Remarks& out) {
   const std::vector<loop::PenetrationReport> penetrations = loop::penetration_reports(world);
   std::string text;
@@ -124,6 +134,7 @@ void check_poses_arrived(const loop::World& world, const loop::RunResult& result
 
 std::vector<std::string> run_remarks(const loop::World& world, const loop::RunResult& result) {
   Remarks out;
+  add_placements(world, out);
   if (world.stepper)
     if (const std::string fallbacks = loop::describe_fallbacks(result.counters); !fallbacks.empty())
       out.push_back(fmt::format("fallbacks of {}: {}", world.stepper->name(), fallbacks));

@@ -103,6 +103,15 @@ struct Bone {
   TriMesh surface;        ///< In the bone's axes; empty without a shape.
 };
 
+/// Motion of a tool with start = "touching" before the simulation starts (src/loop/placing.h).
+struct ToolPlacement {
+  std::string tool;                ///< Name in [[contact]].
+  double moved_m = 0.0;            ///< Distance from the position_m of the scene [m].
+  Vec3 position_m = Vec3::Zero();  ///< Position of the tool at the start [m].
+  std::string touched;             ///< Object that it touches.
+  Vec3 touch_m = Vec3::Zero();     ///< Point of the touch [m].
+};
+
 /// All parts of one assembled scene; absent parts are null or empty. `description` and `folder` are the
 /// input; everything else is changed by run(), or by a caller that steps the World itself. The stepper refers
 /// to `state` and `system`, so a World cannot be copied or moved.
@@ -120,6 +129,7 @@ struct World {
   std::vector<Bone> bones;                         ///< Free, jointed and scripted bones.
   std::shared_ptr<contact::ContactForce> contact;  ///< null without contact pairs
   std::unique_ptr<dynamics::Stepper> stepper;      ///< null without bodies
+  std::vector<ToolPlacement> placements;           ///< One per tool with start = "touching".
   /// One per hand, in the numbering of scene::hands_of(). The type is internal (src/loop/tool_instance.h):
   /// users of the library read tools through the functions below.
   std::vector<ToolInstance> tools;

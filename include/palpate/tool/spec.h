@@ -13,6 +13,11 @@ enum class ToolShape { kSphere, kMesh };
 /// Returns the names of the values.
 constexpr std::array<std::string_view, 2> option_names(ToolShape) { return {"sphere", "mesh"}; }
 
+/// Where a tool starts: at its position_m, or at the first touch of an object on its way from there.
+enum class ToolStart { kPlaced, kTouching };
+/// Returns the names of the values.
+constexpr std::array<std::string_view, 2> option_names(ToolStart) { return {"placed", "touching"}; }
+
 /// Parameters of the virtual coupling between handle and tool, a spring and a damper in each of six
 /// directions: the `[tool.coupling]` table of a scene.
 struct VirtualCouplingSpec {
@@ -32,9 +37,13 @@ struct ToolSpec {
   Vec3 inertia_kg_m2 = Vec3::Zero();        ///< Principal, about the centre of mass; zero: a solid sphere's.
   Vec3 position_m = Vec3::Zero();           ///< Origin at the start.
   Vec3 rotation_vector_rad = Vec3::Zero();  ///< Orientation at the start.
-  bool gravity = false;                     ///< Whether the tool has weight; off, as a device carries it.
-  VirtualCouplingSpec coupling = {};        ///< Spring and damper to the handle.
-  double tick_s = 1e-3;                     ///< Length of a haptic tick.
+  /// kTouching: assembly moves the tool from position_m along start_direction until it touches an object of
+  /// its contacts, and the device's keyframes with it (src/loop/placing.h).
+  ToolStart start = ToolStart::kPlaced;
+  Vec3 start_direction = -Vec3::UnitZ();  ///< World axes, any length; for ToolStart::kTouching.
+  bool gravity = false;                   ///< Whether the tool has weight; off, as a device carries it.
+  VirtualCouplingSpec coupling = {};      ///< Spring and damper to the handle.
+  double tick_s = 1e-3;                   ///< Length of a haptic tick.
   /// Integrator of the tool's ticks: see `palpate list tool-integrators`.
   std::string integrator = "linearly-implicit-euler";
   /// Switch of the handle that grasps: while pressed, the tool holds the contact points that pressed on it
