@@ -10,14 +10,17 @@
 #include "loop/memory.h"
 #include "loop/summary.h"
 #include "palpate/loop/run.h"
+#include "placing_tables.h"
 #include "report/table.h"
 #include "scene_options.h"
+#include "session/start_picture.h"
 
 namespace palpate::cli {
 namespace {
 
 struct InspectArguments {
   SceneArguments scene;
+  std::string picture;  ///< PNG file; empty: none
 };
 
 using Rows = std::vector<std::vector<std::string>>;
@@ -119,6 +122,7 @@ void print_system(loop::World& world, double assemble_s, double memory_mib) {
 }
 
 int inspect(const InspectArguments& arguments) {
+  if (!arguments.picture.empty()) session::check_start_picture(arguments.picture);
   const scene::Description description = scene_of(arguments.scene);
   fmt::print("{}: {}\n\n", description.path, description.name);
   print_needs(description);
@@ -126,21 +130,32 @@ int inspect(const InspectArguments& arguments) {
   const std::unique_ptr<loop::World> world = loop::assemble(description);
   const double seconds = wall_seconds() - start, used = resident_memory_mib() - memory;
   print_bodies(*world);
+  print_boxes(*world);
   print_regions(*world);
   print_bones(*world);
+  print_clearances(*world);
   print_system(*world, seconds, used);
+  if (!arguments.picture.empty()) {
+    session::draw_start(*world, arguments.picture);
+    fmt::print("\npicture: {}\n", arguments.picture);
+  }
   return 0;
 }
 
 }  // namespace
 
 void add_inspect(CLI::App& app, Invocation& invocation) {
-  CLI::App* command =
-      app.add_subcommand("inspect", "print the parts that a scene uses and omits, sizes and memory");
+  CLI::App* command = app.add_subcommand(
+      "inspect", "print the parts that a scene uses and omits, sizes, gaps and memory; draw its start");
   auto arguments = std::make_shared<InspectArguments>();
   add_scene(*command, arguments->scene, true);
+  command
+      ->add_option("--picture", arguments->picture,
+                   "draw the scene at its start: axes, sizes of the bodies, attached nodes")
+      ->type_name("FILE.png");
   command->footer(R"(Examples:
   palpate inspect press-ball
+  palpate inspect press-ball --picture start.png      what touches what, held nodes, sizes
   palpate inspect my.toml --set body.0.mesh.element_size_m=0.005      size with finer elements)");
   command->callback(
       [arguments, &invocation] { invocation.action = [arguments] { return inspect(*arguments); }; });

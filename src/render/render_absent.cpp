@@ -2,6 +2,7 @@
 #include "render/animation.h"
 #include "render/available.h"
 #include "render/field.h"
+#include "render/labels.h"
 #include "render/marks.h"
 #include "render/panels.h"
 #include "render/scene.h"
@@ -34,6 +35,14 @@ Picture beside(const std::vector<Picture>&) {
   return {};
 }
 Picture with_curve(const Picture&, const Curve&, double, int) {
+  check_available();
+  return {};
+}
+Picture draw_labelled(Scene, Options, const std::vector<Label>&) {
+  check_available();
+  return {};
+}
+Surface bar(const Vec3&, const Vec3&, double) {
   check_available();
   return {};
 }
