@@ -46,16 +46,17 @@ class Steps {
   double limit_, start_ = wall_seconds();
 };
 
-void scale(Input& input, double by) {
+/// Scales and rotates all coordinates.
+void transform(Input& input, double by, const Quat& rotation) {
   if (!(by > 0 && std::isfinite(by))) fail("--scale {} must be positive; it multiplies the coordinates", by);
-  input.surface.vertices *= by;
-  input.tets.nodes *= by;
-  input.skin.vertices *= by;
+  const Mat3 of_axes = by * rotation.toRotationMatrix();
+  for (Points* points : {&input.surface.vertices, &input.tets.nodes, &input.skin.vertices})
+    *points = of_axes * *points;
   for (Polyline& line : input.creases)
-    for (Vec3& p : line) p *= by;
+    for (Vec3& p : line) p = of_axes * p;
   for (Bone& bone : input.skeleton.bones) {
-    bone.head *= by;
-    bone.tail *= by;
+    bone.head = of_axes * bone.head;
+    bone.tail = of_axes * bone.tail;
     bone.head_radius *= by;
     bone.tail_radius *= by;
   }
@@ -113,7 +114,8 @@ void find_regions(Input& input, const Options& options, const TetMesh* old, Made
     made.file.record.notes.emplace_back(
         "the regions of the file were transferred to the new tetrahedra by centroid");
   std::vector<RegionSource> sources = options.regions;
-  for (RegionSource& source : sources) source.surface.vertices *= options.scale;
+  for (RegionSource& source : sources)
+    source.surface.vertices = options.scale * options.rotation.toRotationMatrix() * source.surface.vertices;
   std::vector<double> surface_volumes;
   model.regions = add_regions(model.tets, model.skeleton, std::move(regions), sources, surface_volumes);
   for (const MaterialRegion& region : model.regions) {
@@ -278,7 +280,7 @@ Made make_model(Input input, const Options& given_options, ProgressListener& wat
   record.version = store::provenance().version;
   record.notes = std::move(input.notes);
   model.name = input.name;
-  scale(input, options.scale);
+  transform(input, options.scale, options.rotation);
   Steps step(watcher, made, record.source, options.tetrahedra.limits.seconds);
 
   TriMesh surface;

@@ -38,7 +38,8 @@ enum class Creases { kAuto, kNone, kAngle };
 
 /// Options of make_model.
 struct Options {
-  double scale = 1.0;  ///< factor on every coordinate, applied first
+  double scale = 1.0;                ///< factor on every coordinate, applied first
+  Quat rotation = Quat::Identity();  ///< of every coordinate, applied after the factor
   RepairOptions repair;
   TetrahedraOptions tetrahedra;
   Creases creases = Creases::kAuto;

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 #include <sstream>
 
 #include "cli/help_formatter.h"
@@ -27,7 +28,7 @@ constexpr const char* kDescription =
 
 constexpr const char* kExamples = R"(Examples:
   palpate model liver.obj -o liver.h5                         about 10,000 tetrahedra
-  palpate model scan.stl --scale 0.001 -o scan.h5             a file in millimetres
+  palpate model scan.stl --unit mm --up y -o scan.h5          a file in millimetres, whose y axis points up
   palpate model part.ply --tetrahedra 30000 --creases 40      edges that turn by more than 40 degrees stay
                                                               sharp
   palpate model liver.msh --remesh --element-size-m 0.01      the boundary of tetrahedra, remeshed
@@ -90,9 +91,9 @@ model::RegionSource region_of(const std::string& text) {
 /// Returns the options that affect the model, in canonical order and spelling.
 std::string canonical(const CLI::App& app) {
   std::string out;
-  for (const char* name :
-       {"--tetrahedra", "--element-size-m", "--skin-vertices", "--scale", "--creases", "--proxies",
-        "--bone-margin-m", "--region", "--remesh", "--accept-angles", "--largest-shell", "--no-wrap"})
+  for (const char* name : {"--tetrahedra", "--element-size-m", "--skin-vertices", "--scale", "--unit", "--up",
+                           "--creases", "--proxies", "--bone-margin-m", "--region", "--remesh",
+                           "--accept-angles", "--largest-shell", "--no-wrap"})
     if (const CLI::Option* option = app.get_option(name); option->count() > 0) {
       if (std::string_view(name) == "--region") {
         for (const std::string& given : option->results())
@@ -105,9 +106,17 @@ std::string canonical(const CLI::App& app) {
   return out;
 }
 
+/// Returns the rotation that makes an axis of the file the z axis: about x for y, about y for x.
+Quat rotation_of(const std::string& up) {
+  constexpr double kQuarter = std::numbers::pi / 2;
+  if (up == "y") return Quat(Eigen::AngleAxisd(kQuarter, Vec3::UnitX()));
+  if (up == "x") return Quat(Eigen::AngleAxisd(-kQuarter, Vec3::UnitY()));
+  return Quat::Identity();
+}
+
 /// Options that are parsed after CLI11 has read all words.
 struct Texts {
-  std::string creases = "auto";
+  std::string creases = "auto", unit, up = "z";
   std::vector<std::string> regions;
 };
 
@@ -131,6 +140,14 @@ void add_shape_options(CLI::App& app, ModelArguments& out, Texts& texts) {
   app.add_option("--scale", options.scale, "multiplies every coordinate: 0.001 for a file in millimetres")
       ->type_name("S")
       ->check(positive)
+      ->capture_default_str();
+  app.add_option("--unit", texts.unit, "unit of the file's coordinates; same as --scale 0.001, 0.01, 1")
+      ->type_name("UNIT")
+      ->check(CLI::IsMember({"mm", "cm", "m"}))
+      ->excludes("--scale");
+  app.add_option("--up", texts.up, "axis of the file that becomes z, the vertical")
+      ->type_name("AXIS")
+      ->check(CLI::IsMember({"x", "y", "z"}))
       ->capture_default_str();
   app.add_option("--creases", texts.creases,
                  "edges to keep sharp: auto, none, or those that turn by more than this angle [degrees]")
@@ -186,7 +203,9 @@ void settle(const CLI::App& app, const Texts& texts, ModelArguments& out) {
   set_creases(texts.creases, options);
   for (const std::string& region : texts.regions) options.regions.push_back(region_of(region));
   out.counted = app.count("--tetrahedra") > 0;
-  out.scaled = app.count("--scale") > 0;
+  out.scaled = app.count("--scale") + app.count("--unit") > 0;
+  if (!texts.unit.empty()) options.scale = texts.unit == "mm" ? 1e-3 : texts.unit == "cm" ? 1e-2 : 1.0;
+  options.rotation = rotation_of(texts.up);
   if (out.counted || options.tetrahedra.element_size_m > 0) options.remesh = true;
   if (options.remesh && options.accept_angles)
     fail(

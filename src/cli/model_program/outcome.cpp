@@ -10,6 +10,8 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
+std::string triple(const Vec3& x) { return fmt::format("{:.4g} {:.4g} {:.4g}", x.x(), x.y(), x.z()); }
+
 Rows figures(const model::Made& made) {
   const model::TetQuality& q = made.quality;
   const LayeredModel& m = made.file.model;
@@ -25,6 +27,12 @@ Rows figures(const model::Made& made) {
   add("largest dihedral angle [deg]", fmt::format("{:.2f}", q.largest_dihedral_deg));
   add("worst aspect ratio", fmt::format("{:.2f}", q.worst_aspect));
   add("mean edge [m]", fmt::format("{:.4g}", q.mean_edge));
+  const Points& nodes = m.tets.nodes;
+  const Vec3 low = nodes.rowwise().minCoeff(), high = nodes.rowwise().maxCoeff();
+  add("bounding box: size [m]", triple(high - low));
+  add("bounding box: from [m]", triple(low));
+  add("bounding box: to [m]", triple(high));
+  add("mass at 1000 kg/m^3 [kg]", fmt::format("{:.4g}", 1000.0 * q.volume));
   add("volume [m^3]", fmt::format("{:.6g}", q.volume));
   add("volume error [%]", fmt::format("{:.4f}", 100 * q.volume_error));
   for (const auto& [name, value] : made.file.record.figures) {

@@ -14,7 +14,8 @@ void ask_about_size(const ModelArguments& arguments, const model::Input& input) 
   const Points& points = input.tets.nodes.cols() > 0 ? input.tets.nodes : input.surface.vertices;
   const std::optional<mesh::SizeDoubt> doubt = mesh::doubt_about_size(points);
   if (arguments.scaled || !doubt) return;
-  const std::string units = fmt::format("for a file in {}, use --scale {}", doubt->other_unit, doubt->factor),
+  const std::string units = fmt::format("for a file in {}, use --scale {}{}", doubt->other_unit,
+                                        doubt->factor, doubt->factor == 1e-3 ? " or --unit mm" : ""),
                     question = fmt::format("{}: the body is {:.3g} m large: is this intended?", input.source,
                                            doubt->size_m);
   if (::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1) {
