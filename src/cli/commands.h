@@ -12,6 +12,7 @@ namespace palpate::cli {
 struct Invocation;
 
 void add_demo(CLI::App& app, Invocation& invocation);
+void add_new(CLI::App& app, Invocation& invocation);
 void add_run(CLI::App& app, Invocation& invocation);
 void add_compare(CLI::App& app, Invocation& invocation);
 void add_study(CLI::App& app, Invocation& invocation);

@@ -1,12 +1,8 @@
 #include "model_cache.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstring>
 #include <filesystem>
 
 #include "cli/other_program.h"
@@ -18,24 +14,6 @@ namespace palpate::cli {
 namespace fs = std::filesystem;
 namespace {
 
-/// Runs a program to its end and discards its output except errors.  @return the exit status
-int run_to_end(const std::vector<std::string>& words) {
-  std::vector<std::string> copies = words;
-  std::vector<char*> pointers;
-  for (std::string& word : copies) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t child = 0;
-  const int error = posix_spawn(&child, pointers[0], &actions, nullptr, pointers.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) fail("{} cannot be started: {}", words[0], std::strerror(error));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
-  return status;
-}
-
 void make_model(const std::string& name, const fs::path& path) {
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
@@ -44,7 +22,7 @@ void make_model(const std::string& name, const fs::path& path) {
   fmt::print(stderr, "palpate: making the model \"{}\", once; stored in {}\n", name, path.string());
   // under a temporary name until it is complete: two runs may build the model at the same time
   const fs::path draft = path.parent_path() / fmt::format("{}-{}.h5", name, ::getpid());
-  const int status = run_to_end({path_of(kModel), name, "-o", draft.string()});
+  const int status = run_silently(kModel, {name, "-o", draft.string()});
   if (status != 0) {
     fs::remove(draft, error);
     fail("the model \"{}\" was not made; see above", name);

@@ -1,5 +1,6 @@
 #include "cli/other_program.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -95,6 +96,22 @@ std::string output_of(const OtherProgram& other) {
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
   if (status != 0) fail("{} {} failed; see above", words[0], words[1]);
   return out;
+}
+
+int run_silently(const OtherProgram& other, const std::vector<std::string>& words) {
+  std::vector<std::string> all = {path_of(other)};
+  all.insert(all.end(), words.begin(), words.end());
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  pid_t child = 0;
+  const int error =
+      posix_spawn(&child, all.front().c_str(), &actions, nullptr, arguments_of(all).data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) refuse(other, error);
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+  return status;
 }
 
 }  // namespace palpate::cli

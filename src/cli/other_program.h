@@ -55,4 +55,10 @@ int start(const OtherProgram& other, std::vector<std::string> words);
 /// @throws Error if the program's file does not exist, or the program fails
 std::string output_of(const OtherProgram& other);
 
+/// Runs the program to its end, and discards its standard output; errors and progress are printed.
+/// @param words  arguments
+/// @return its exit status, nonzero too where a signal ended it
+/// @throws Error if the program's file does not exist
+int run_silently(const OtherProgram& other, const std::vector<std::string>& words);
+
 }  // namespace palpate::cli

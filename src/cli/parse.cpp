@@ -22,6 +22,7 @@ constexpr const char* kExamples = R"(Examples:
   palpate run press-ball                         a tool presses a soft ball; results in out/press-ball
   palpate run my.toml --set body.0.youngs_modulus_pa=2e4 -o out/softer
   palpate touch                                  touch a head in your browser, in real time
+  palpate new liver.obj --unit mm                a scene that touches your mesh, each number explained
   palpate inspect press-ball                     parts that a scene uses and omits, sizes, memory
   palpate export out/press-ball --to vtu         a run as files for other programs
   palpate model liver.obj -o liver.h5            a layered model of a closed surface
@@ -41,6 +42,7 @@ void add_other(CLI::App& app, const OtherProgram& other) {
 
 void add_commands(CLI::App& app, Invocation& invocation) {
   add_demo(app, invocation);
+  add_new(app, invocation);
   add_run(app, invocation);
   add_other(app, kTouch);
   add_compare(app, invocation);
