@@ -17,4 +17,9 @@ Pose rigid_fit(const Points& before, const Points& after, const VecX& weights) {
   return {Quat(R), d - R * c};
 }
 
+Points without_rigid_motion(const Points& before, const Points& after, const VecX& weights) {
+  const Pose motion = rigid_fit(before, after, weights);
+  return after - ((motion.rotation.toRotationMatrix() * before).colwise() + motion.translation);
+}
+
 }  // namespace palpate

@@ -11,4 +11,8 @@ namespace palpate {
 /// @param weights  n, non-negative; empty for equal weights
 Pose rigid_fit(const Points& before, const Points& after, const VecX& weights = {});
 
+/// Returns the displacements without rigid motion, b_i - (R a_i + t) with that fit, 3 x n [m].  With masses
+/// as weights their sum has no momentum and no angular momentum about the centre of mass.
+Points without_rigid_motion(const Points& before, const Points& after, const VecX& weights = {});
+
 }  // namespace palpate

@@ -36,4 +36,26 @@ TEST(RigidFit, WeighsItsPoints) {
   EXPECT_LT((carried - after.col(3)).norm(), 1e-5);
 }
 
+// With masses, what is left has no momentum, no angular momentum, and nothing of the rigid motion.
+TEST(WithoutRigidMotion, LeavesTheDeformation) {
+  const VecX masses = Eigen::Vector4d(1, 2, 3, 4);
+  const Quat turn(Eigen::AngleAxisd(0.7, Vec3(0.2, 1, -0.5).normalized()));
+  Points bent = kCorner;
+  bent.col(3) += Vec3(0.01, 0.02, -0.03);
+  const Points still = without_rigid_motion(kCorner, bent, masses);
+  const Points moved =
+      without_rigid_motion(kCorner, (turn.toRotationMatrix() * bent).colwise() + Vec3(5, 6, 7), masses);
+  EXPECT_LT((moved.colwise().norm() - still.colwise().norm()).norm(), 1e-12);
+  EXPECT_GT(still.norm(), 0.01);
+  const Vec3 centre = kCorner * masses / masses.sum();
+  Vec3 momentum = Vec3::Zero(), angular = Vec3::Zero();
+  for (int i = 0; i < 4; ++i) {
+    momentum += masses[i] * still.col(i);
+    angular += masses[i] * Vec3(rigid_fit(kCorner, bent, masses).rotation * Vec3(kCorner.col(i) - centre))
+                               .cross(Vec3(still.col(i)));
+  }
+  EXPECT_LT(momentum.norm(), 1e-12);
+  EXPECT_LT(angular.norm(), 1e-12);
+}
+
 }  // namespace
