@@ -58,7 +58,8 @@ std::string without_compare(const std::string& source) {
     if (first != std::string::npos && line[first] == '[') {
       const std::size_t name = line.find_first_not_of("[ \t", first);
       left_out = name != std::string::npos &&
-                 (line.compare(name, 8, "compare]") == 0 || line.compare(name, 8, "compare.") == 0);
+                 (line.compare(name, 8, "compare]") == 0 || line.compare(name, 8, "compare.") == 0 ||
+                  line.compare(name, 5, "view]") == 0);
     }
     if (!left_out) out += line + "\n";
   }

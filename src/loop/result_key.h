@@ -5,8 +5,9 @@
 
 namespace palpate::loop {
 
-/// Returns the scene's text without its [compare] tables, which do not affect the result of a single run, so
-/// that a refinement sequence can be added to a study. A text with multi-line strings is returned unchanged.
+/// Returns the scene's text without its tables [compare] and [view], which do not affect the result of a
+/// single run, so that a refinement sequence can be added to a study. A text with multi-line strings is
+/// returned unchanged.
 std::string without_compare(const std::string& source);
 
 /// Returns version and commit of this build. For modified or unknown sources the commit is not unique, so

@@ -337,6 +337,7 @@ const KeyTable<Description>& description_keys() {
       table("record", &Description::record, record_keys(),
             "time series that a run records; without this table, none"),
       table("compare", &Description::compare, compare_keys(), "settings of palpate compare for this scene"),
+      table("view", &Description::view, view_keys(), "view of pictures, movies and pages"),
   };
   return keys;
 }

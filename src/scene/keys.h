@@ -10,6 +10,7 @@ const KeyTable<SoftBodySpec>& body_keys();        ///< Table [[body]].
 const KeyTable<BoneSpec>& bone_keys();            ///< Table [[bone]].
 const KeyTable<DeviceSpec>& device_keys();        ///< Table [device].
 const KeyTable<MeshSpec>& mesh_keys();            ///< Tables [body.mesh], [tool.mesh].
+const KeyTable<ViewSpec>& view_keys();            ///< Table [view].
 /// Tables [[device.keyframe]], [[body.attachment.keyframe]], [[body.skeleton.joint.keyframe]],
 /// [[bone.keyframe]].
 const KeyTable<KeyframeSpec>& keyframe_keys();

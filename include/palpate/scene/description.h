@@ -115,6 +115,14 @@ struct HandSpec {
   DeviceSpec device;  ///< Table [hand.device].
 };
 
+/// View of pictures, movies and pages: the `[view]` table.
+struct ViewSpec {
+  std::optional<Vec3> direction;  ///< From the scene to the eye, not zero; empty: chosen by the picture.
+  std::optional<Vec3> target_m;   ///< Point in the middle of the picture [m]; empty: the middle of the scene.
+  double zoom = 1.0;              ///< Magnification; 1 shows the whole scene.
+  Vec3 up = Vec3::UnitZ();        ///< Upward direction of the picture, not zero.
+};
+
 /// Scene file as plain data: everything that a run needs, nothing computed.  A part that is absent here is
 /// not built.
 struct Description {
@@ -134,6 +142,7 @@ struct Description {
   IntegratorSpec integrator;    ///< Table [integrator].
   std::optional<RecordSpec> record;  ///< Table [record]; empty: nothing is recorded.
   CompareSpec compare;               ///< Table [compare].
+  ViewSpec view;                     ///< Table [view].
   /// Keys of the file that apply only to an integrator (obstacle, method, ...) replaced by an override:
   /// "integrator.rtol"; they are not in `source`.
   std::vector<std::string> not_carried_over;
