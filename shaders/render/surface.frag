@@ -52,5 +52,8 @@ void main() {
   float gloss = pow(max(dot(n, normalize(key_light + to_eye)), 0.0), 60.0) * min(key * 3.0, 1.0);
   float rim = 1.0 - max(dot(n, to_eye), 0.0);
   vec3 shade = base * (0.53 + 0.14 * sky + 0.40 * key + 0.16 * fill) * (1.0 - 0.14 * rim * rim);
-  colour = vec4(shade + vec3(0.12 * gloss), opacity);
+  // A translucent surface is more opaque towards its outline, as glass is: it shows its shape, and what lies
+  // behind its middle.
+  float cover = opacity < 1.0 ? mix(opacity, 1.0, 0.75 * pow(rim, 4.0)) : 1.0;
+  colour = vec4(shade + vec3(0.12 * gloss), cover);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/object_colours.h"
 #include "palpate/core/error.h"
 #include "recorded_scene.h"
 #include "render/colour_map.h"
@@ -71,7 +72,7 @@ void RecordedSurfaces::add(int part, const loop::Body* body) {
 }
 
 store::Rgb8 RecordedSurfaces::colour(std::size_t i) const {
-  return bytes_of(rigid(i) ? render::Rgb{0.80f, 0.42f, 0.20f} : render::Rgb{0.62f, 0.66f, 0.71f});
+  return bytes_of(render::colour_of(rigid(i) ? colours::tool(0) : colours::kBody));
 }
 
 double RecordedSurfaces::largest_displacement(const std::vector<int>& steps) const {
@@ -107,7 +108,7 @@ std::vector<store::SurfaceState> RecordedSurfaces::at(int step, double largest) 
     state.stress = s.values(stress.segment(first, n));
     for (const double moved : state.displacement)
       state.colours.push_back(s.rigid ? colour(i)
-                                      : bytes_of(render::viridis(largest > 0.0 ? moved / largest : 0.0)));
+                                      : bytes_of(render::ramp(largest > 0.0 ? moved / largest : 0.0)));
     out.push_back(std::move(state));
   }
   return out;

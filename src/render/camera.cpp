@@ -20,6 +20,7 @@ Mat3 camera_axes(const Vec3& backwards, const Vec3& up) {
 }
 
 Vec3 backwards_of(const View& view) {
+  if (view.backwards) return view.backwards->normalized();
   const double degree = std::numbers::pi / 180.0;
   const double azimuth = view.azimuth_deg * degree, elevation = view.elevation_deg * degree;
   return {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
@@ -35,12 +36,14 @@ Vec3 backwards_of(const View& view) {
 Camera framed(const Points& points, const View& view, double aspect, const Margins& margins) {
   PALPATE_CHECK(points.cols() > 0 && points.allFinite(), "{} points to frame", points.cols());
   const double degree = std::numbers::pi / 180.0;
-  const Mat3 axes = camera_axes(backwards_of(view), Vec3::UnitZ());
+  PALPATE_CHECK(view.zoom > 0.0, "zoom {}", view.zoom);
+  const Mat3 axes = camera_axes(backwards_of(view), view.up);
   const Vec3 middle = 0.5 * (points.rowwise().minCoeff() + points.rowwise().maxCoeff());
   const Points p = axes.transpose() * (points.colwise() - middle);
   const double front = p.row(2).maxCoeff(), behind = p.row(2).minCoeff();
 
   Camera camera;
+  camera.up = view.up;
   camera.perspective = view.perspective;
   camera.shift = {margins.left - margins.right, margins.bottom - margins.top};
   const double width = 1.0 - margins.left - margins.right, height = 1.0 - margins.bottom - margins.top;
@@ -61,7 +64,10 @@ Camera framed(const Points& points, const View& view, double aspect, const Margi
     camera.half_height =
         std::max({(right + left) / (2.0 * aspect * width), (top + bottom) / (2.0 * height), 1e-9});
   }
-  const Vec3 centre((right - left) / 2.0, (top - bottom) / 2.0, 0.0);
+  // A target moves the camera sideways only: its distance from the scene, and so its clipping planes, stay.
+  Vec3 centre((right - left) / 2.0, (top - bottom) / 2.0, 0.0);
+  if (view.target) centre.head<2>() = (axes.transpose() * (*view.target - middle)).head<2>();
+  camera.half_height /= view.zoom;
   camera.target = middle + axes * centre;
   camera.eye = middle + axes * (centre + Vec3(0, 0, distance));
   camera.near = std::max(0.5 * (distance - front), 1e-3 * distance);

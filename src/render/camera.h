@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "palpate/core/types.h"
 
 namespace palpate::render {
@@ -21,6 +23,11 @@ struct View {
   double elevation_deg = 22.0;  ///< Elevation of the eye above the horizon [degrees]; less than 90.
   bool perspective = true;
   double angle_deg = 26.0;  ///< Viewing angle of the image's height, in perspective [degrees].
+  /// Direction from the scene to the eye, not zero; replaces azimuth and elevation.
+  std::optional<Vec3> backwards = {};
+  Vec3 up = Vec3::UnitZ();          ///< Upward direction of the image; not zero.
+  std::optional<Vec3> target = {};  ///< Point shown in the middle [m]; empty: the middle of the scene.
+  double zoom = 1.0;                ///< Magnification; 1 shows the whole scene.
 };
 
 /// Margins of the image, as fractions of its size, that the scene leaves free.
@@ -28,7 +35,8 @@ struct Margins {
   double left = 0.06, right = 0.06, top = 0.06, bottom = 0.06;
 };
 
-/// Returns the nearest camera that shows all points inside the margins.
+/// Returns the nearest camera that shows all points inside the margins; with the target of the view, the same
+/// camera moved sideways; with a zoom, with a narrower viewing angle.
 /// @param points  not empty, finite
 /// @param aspect  width over height
 Camera framed(const Points& points, const View& view, double aspect, const Margins& margins);

@@ -4,30 +4,40 @@
 #include <array>
 #include <cmath>
 
+#include "core/object_colours.h"
+#include "palpate/core/error.h"
+
 namespace palpate::render {
 namespace {
 
-// Polynomials of degree 6 in t, one per channel: a least-squares fit by palpate, exact at both ends, to
-// eleven of the 256 published values of viridis (S. van der Walt, N. Smith, "A better default colormap for
-// Matplotlib", SciPy 2015; the values are in the public domain, CC0).  At these eleven values the error is at
-// most 0.014 (red), 0.003 (green), 0.007 (blue).
-constexpr std::array<std::array<double, 7>, 3> kViridis = {{
-    {0.26700, 0.21199, -0.61084, -5.05401, 9.02738, 0.91960, -3.76787},
-    {0.00487, 1.31431, 0.93427, -8.22793, 18.31198, -17.15534, 5.72399},
-    {0.32942, 1.34999, 0.68104, -21.91204, 61.97703, -70.44461, 28.16312},
-}};
-
-float polynomial(const std::array<double, 7>& c, double t) {
-  double sum = 0.0;
-  for (std::size_t k = c.size(); k-- > 0;) sum = sum * t + c[k];
-  return static_cast<float>(std::clamp(sum, 0.0, 1.0));
+int hex_digit(char c) {
+  const int value = c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+  PALPATE_CHECK(value >= 0, "\"{}\" is no hexadecimal digit", c);
+  return value;
 }
 
 }  // namespace
 
-Rgb viridis(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return {polynomial(kViridis[0], t), polynomial(kViridis[1], t), polynomial(kViridis[2], t)};
+Rgb colour_of(std::string_view hex) {
+  PALPATE_CHECK(hex.size() == 7 && hex[0] == '#', "\"{}\" is no colour", hex);
+  const auto channel = [&](std::size_t at) {
+    return static_cast<float>(16 * hex_digit(hex[at]) + hex_digit(hex[at + 1])) / 255.0f;
+  };
+  return {channel(1), channel(3), channel(5)};
+}
+
+Rgb ramp(double t) {
+  static const auto stops = [] {
+    std::array<Rgb, colours::kRamp.size()> out{};
+    std::transform(colours::kRamp.begin(), colours::kRamp.end(), out.begin(), colour_of);
+    return out;
+  }();
+  const double at = std::clamp(t, 0.0, 1.0) * (stops.size() - 1);
+  const std::size_t i = std::min(static_cast<std::size_t>(at), stops.size() - 2);
+  const auto share = static_cast<float>(at - static_cast<double>(i));
+  const auto between = [share](float a, float b) { return a + share * (b - a); };
+  const Rgb &a = stops[i], &b = stops[i + 1];
+  return {between(a.r, b.r), between(a.g, b.g), between(a.b, b.b)};
 }
 
 ColourScale settled(const ColourScale& scale, double least, double greatest) {

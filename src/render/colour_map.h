@@ -1,16 +1,20 @@
 #pragma once
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "palpate/core/types.h"
 #include "render/picture.h"
 
 namespace palpate::render {
 
-/// Returns the colour of viridis (Smith and van der Walt 2015), from dark violet at 0 to yellow at 1: equal
-/// steps of value are equal steps of lightness, also for readers with colour deficiencies and in greyscale
-/// print.  `t` is clamped to [0, 1].
-Rgb viridis(double t);
+/// Returns a colour given as "#rrggbb".
+/// @throws InternalError for another format
+Rgb colour_of(std::string_view hex);
+
+/// Returns the colour of a value at `t` on the range of a scale (core/object_colours.h: kRamp), from a pale
+/// body at 0 to dark magenta at 1. `t` is clamped to [0, 1].
+Rgb ramp(double t);
 
 /// Mapping from values to colours, and the labels of the colour bar.
 struct ColourScale {
@@ -21,6 +25,7 @@ struct ColourScale {
   /// Differences up to this are rounding errors: where all values differ by no more, one colour and one
   /// number are shown.  Without it a body at rest would be drawn in all colours, over a range of 1e-17 m.
   double resolution = 0.0;
+  std::string note = {};  ///< Remark under the colour bar: "without rigid motion"; empty: none.
   bool is_flat() const { return high == low; }  ///< Whether a settled scale has only one value.
 };
 

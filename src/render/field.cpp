@@ -20,7 +20,7 @@ void paint(Canvas& canvas, const Field& field, const ColourScale& scale, int lef
       const double value =
           field.values[static_cast<std::size_t>(row) * static_cast<std::size_t>(field.width) +
                        static_cast<std::size_t>(column)];
-      canvas.set_colour(std::isfinite(value) ? viridis(share(scale, value)) : kNoValue);
+      canvas.set_colour(std::isfinite(value) ? ramp(share(scale, value)) : kNoValue);
       canvas.fill_rectangle(left + column * magnify, top + (field.height - 1 - row) * magnify, magnify,
                             magnify);
     }

@@ -62,6 +62,30 @@ Surface outline(const Points& points, const Faces& faces, double width, double l
   return pieces.surface();
 }
 
+Surface rings(const Vec3& semi_axes, double width) {
+  PALPATE_CHECK(width > 0.0 && semi_axes.minCoeff() >= 0.0, "rings: width {}, semi-axes {} {} {}", width,
+                semi_axes.x(), semi_axes.y(), semi_axes.z());
+  constexpr int kPieces = 64;
+  Pieces pieces;
+  for (int normal = 0; normal < 3; ++normal) {
+    const int a = (normal + 1) % 3, b = (normal + 2) % 3;
+    const auto at = [&](int i) {
+      const double angle = 2.0 * std::numbers::pi * i / kPieces;
+      return Vec3(semi_axes[a] * std::cos(angle) * Vec3::Unit(a) +
+                  semi_axes[b] * std::sin(angle) * Vec3::Unit(b));
+    };
+    for (int i = 0; i < kPieces; ++i) add_bar(pieces, at(i), at(i + 1), width);
+  }
+  return pieces.surface();
+}
+
+Surface bar(const Vec3& from, const Vec3& to, double width) {
+  PALPATE_CHECK(width > 0.0, "bar: width = {}", width);
+  Pieces pieces;
+  add_bar(pieces, from, to, width);
+  return pieces.surface();
+}
+
 Surface dots(const Points& points, double size) {
   PALPATE_CHECK(size > 0.0, "dots: size = {}", size);
   Pieces pieces;

@@ -24,7 +24,8 @@ std::string label_of(const ColourScale& scale) {
 
 /// Returns the width of the colour bar with label and ticks [pixels].
 double width_of_scale(Canvas& canvas, const ColourScale& scale, double u) {
-  return std::max(canvas.text_width(label_of(scale), 18 * u), 110 * u);
+  return std::max(
+      {canvas.text_width(label_of(scale), 18 * u), canvas.text_width(scale.note, 15 * u), 110 * u});
 }
 
 /// Draws a pale plate that keeps a text legible where the scene extends under it, which happens when only a
@@ -75,7 +76,7 @@ void draw_scale(Canvas& canvas, const ColourScale& scale, double x, double y, do
   const ScaledUnit unit = scaled_unit(scale.unit, std::max(std::abs(scale.low), std::abs(scale.high)));
   const int rows = std::max(2, static_cast<int>(height));
   for (int i = 0; i < rows; ++i) {
-    canvas.set_colour(viridis(scale.is_flat() ? 0.0 : 1.0 - (i + 0.5) / rows));
+    canvas.set_colour(ramp(scale.is_flat() ? 0.0 : 1.0 - (i + 0.5) / rows));
     canvas.fill_rectangle(x, y + i * height / rows, width, height / rows + (i + 1 < rows ? 0.6 : 0.0));
   }
   const std::vector<Tick> marks =
@@ -105,10 +106,12 @@ Picture annotated(const Picture& picture, const Scene& scene, const ColourScale&
   if (with_scale) {
     const double bar_height = 0.46 * height, bar_x = width - 108 * u, bar_y = 0.5 * (height - bar_height);
     const double right = width - kScaleEdge * u, own = width_of_scale(canvas, scale, u);
-    draw_plate(canvas, right - own, bar_y - 38 * u, own, bar_height + 52 * u, u);
+    draw_plate(canvas, right - own, bar_y - 38 * u, own, bar_height + (scale.note.empty() ? 52 : 76) * u, u);
     canvas.set_colour(kInk);
     canvas.text(label_of(scale), right, bar_y - 20 * u, 18 * u, 1.0);
     draw_scale(canvas, scale, bar_x, bar_y, 20 * u, bar_height, 17 * u);
+    canvas.set_colour(kQuiet);
+    canvas.text(scale.note, right, bar_y + bar_height + 32 * u, 15 * u, 1.0);
   }
   draw_names(canvas, scene, grid_spacing, u, height);
   return canvas.result();

@@ -50,6 +50,14 @@ Surface outline(const Points&, const Faces&, double, double) {
   check_available();
   return {};
 }
+Surface rings(const Vec3&, double) {
+  check_available();
+  return {};
+}
+Surface bar(const Vec3&, const Vec3&, double) {
+  check_available();
+  return {};
+}
 Surface dots(const Points&, double) {
   check_available();
   return {};

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/object_colours.h"
 #include "palpate/core/types.h"
 #include "render/camera.h"
 #include "render/colour_map.h"
@@ -18,9 +19,10 @@ struct Surface {
   /// One value per point, coloured by the scene's scale; NaN: plain colour; empty: the whole surface is
   /// plain.
   VecX values = {};
-  Rgb colour = {0.62f, 0.66f, 0.71f};  ///< Plain colour.
-  double opacity = 1.0;                ///< Below 1: translucent.
-  double crease_deg = 40.0;            ///< Edges sharper than this are not smoothed [degrees].
+  Rgb colour = colour_of(colours::kBody);  ///< Plain colour.
+  double opacity = 1.0;                    ///< Below 1: translucent.
+  double crease_deg = 40.0;                ///< Edges sharper than this are not smoothed [degrees].
+  bool casts_shadow = true;
   bool subject = false;  ///< Whether the surface is a subject that the view should show (seen.h).
 };
 

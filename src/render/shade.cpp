@@ -13,6 +13,7 @@
 #include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "lights.h"
+#include "tessellate.h"
 
 namespace palpate::render {
 namespace {
@@ -50,7 +51,7 @@ Drawable ground_square(const Ground& ground, const Staging& staging) {
 gl::Texture colour_table() {
   std::array<std::uint8_t, 4 * 256> bytes{};
   for (int i = 0; i < 256; ++i) {
-    const Picture pixel(1, 1, viridis(i / 255.0));
+    const Picture pixel(1, 1, ramp(i / 255.0));
     std::copy(pixel.rgba.begin(), pixel.rgba.end(), bytes.begin() + 4 * i);
   }
   gl::Texture table(256, 1, gl::Format::kRgba8);
@@ -99,9 +100,11 @@ Shader::Shader(const Scene& scene, const Staging& staging, const Options& option
   camera_.target -= staging.centre;
   view_ = view_projection(camera_, static_cast<double>(options.width) / options.height).cast<float>();
   light_ = light_projection(lights_.key, staging.radius).cast<float>();
+  const Viewport viewport{view_, options.width, options.height};
   for (const Surface& surface : scene.surfaces)
     if (surface.faces.cols() > 0)
-      drawables_.emplace_back(corners(surface, staging.scale, staging.centre), &surface);
+      drawables_.emplace_back(
+          tessellated(corners(surface, staging.scale, staging.centre), surface.faces, viewport), &surface);
 }
 
 void Shader::draw_shadows() {
@@ -110,7 +113,8 @@ void Shader::draw_shadows() {
   shadow_.use();
   shadow_.set("light_projection", light_);
   if (options_.lit)
-    for (const Drawable& d : drawables_) d.draw();
+    for (const Drawable& d : drawables_)
+      if (d.surface->casts_shadow) d.draw();
 }
 
 void Shader::set_common(gl::Program& program) {

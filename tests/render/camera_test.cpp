@@ -100,3 +100,33 @@ TEST(Framed, RefusesNothingAndTheNonFinite) {
   EXPECT_THROW(render::framed(Points(3, 0), {}, 1.0, {}), InternalError);
   EXPECT_THROW(render::framed(Points::Constant(3, 1, std::nan("")), {}, 1.0, {}), InternalError);
 }
+
+TEST(Framed, ATargetIsInTheMiddleAndAZoomMagnifiesAboutIt) {
+  const Points points = random_points(200);
+  const double aspect = 1.5;
+  const render::Margins margins{0.05, 0.25, 0.1, 0.1};
+  const Eigen::Vector2d middle(-0.2, 0.0);  // of the part of the image inside the margins
+  render::View view;
+  view.target = points.col(17);
+  const Camera whole = render::framed(points, view, aspect, margins);
+  view.zoom = 3.0;
+  const Camera near = render::framed(points, view, aspect, margins);
+  EXPECT_LT((projected(whole, aspect, points).col(17).head<2>() - middle).norm(), 1e-9);
+  const Points at_1 = projected(whole, aspect, points), at_3 = projected(near, aspect, points);
+  for (int i = 0; i < 200; ++i)
+    EXPECT_LT((at_3.col(i).head<2>() - middle - 3.0 * (at_1.col(i).head<2>() - middle)).norm(), 1e-9) << i;
+  EXPECT_LE(at_1.row(2).maxCoeff(), 1.0);  // nothing is clipped
+  EXPECT_GE(at_1.row(2).minCoeff(), -1.0);
+}
+
+TEST(Framed, TakesADirectionAndAnUpwardAxis) {
+  const Points points = random_points(100);
+  render::View view;
+  view.backwards = Vec3(0, 0, 2);
+  view.up = Vec3(1, 0, 0);
+  const Camera camera = render::framed(points, view, 1.0, {});
+  EXPECT_LT((render::backwards_of(view) - Vec3::UnitZ()).norm(), 1e-12);
+  const Mat3 axes = render::camera_axes(camera.eye - camera.target, camera.up);
+  EXPECT_LT((axes.col(1) - Vec3::UnitX()).norm(), 1e-9);
+  EXPECT_LT((axes.col(2) - Vec3::UnitZ()).norm(), 1e-9);
+}

@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include "core/object_colours.h"
+#include "palpate/core/error.h"
+
 using namespace palpate;
 
 namespace {
@@ -17,31 +20,40 @@ double lightness(render::Rgb c) {
 
 }  // namespace
 
-TEST(Viridis, FollowsThePublishedColours) {
-  // #440154, #3b528b, #21918c, #5ec962, #fde725 at 0, 1/4, 1/2, 3/4, 1
-  const int published[5][3] = {
-      {0x44, 0x01, 0x54}, {0x3b, 0x52, 0x8b}, {0x21, 0x91, 0x8c}, {0x5e, 0xc9, 0x62}, {0xfd, 0xe7, 0x25}};
-  for (int i = 0; i < 5; ++i) {
-    const render::Rgb c = render::viridis(i / 4.0);
-    EXPECT_NEAR(c.r, published[i][0] / 255.0, 0.02) << i;
-    EXPECT_NEAR(c.g, published[i][1] / 255.0, 0.02) << i;
-    EXPECT_NEAR(c.b, published[i][2] / 255.0, 0.02) << i;
-  }
-}
-
-TEST(Viridis, GrowsLighterInEvenSteps) {
-  // The published map is linear in lightness, from 15 to 91.
-  const double low = lightness(render::viridis(0.0)), high = lightness(render::viridis(1.0));
+TEST(Ramp, GrowsDarkerInEvenSteps) {
+  // From a pale body to a dark one: a fifth of the lightness is left for shading below the darkest colour.
+  const double low = lightness(render::ramp(0.0)), high = lightness(render::ramp(1.0));
+  EXPECT_GT(low, 80.0);
+  EXPECT_GT(high, 20.0);
   for (int i = 0; i <= 100; ++i) {
     const double t = i / 100.0;
-    EXPECT_NEAR(lightness(render::viridis(t)), low + t * (high - low), 2.5) << t;
-    EXPECT_GT(lightness(render::viridis(t + 0.005)), lightness(render::viridis(t - 0.005))) << t;
+    EXPECT_NEAR(lightness(render::ramp(t)), low + t * (high - low), 2.5) << t;
+    EXPECT_LT(lightness(render::ramp(t + 0.005)), lightness(render::ramp(t - 0.005))) << t;
   }
 }
 
-TEST(Viridis, ClampsItsArgument) {
-  EXPECT_EQ(render::viridis(-3.0).r, render::viridis(0.0).r);
-  EXPECT_EQ(render::viridis(2.0).b, render::viridis(1.0).b);
+TEST(Ramp, EndsAtTheColoursOfTheTable) {
+  for (const auto& [t, name] : {std::pair{0.0, colours::kRamp.front()}, {1.0, colours::kRamp.back()}}) {
+    const render::Rgb drawn = render::ramp(t), listed = render::colour_of(name);
+    EXPECT_EQ(drawn.r, listed.r);
+    EXPECT_EQ(drawn.g, listed.g);
+    EXPECT_EQ(drawn.b, listed.b);
+  }
+  EXPECT_EQ(colours::kBody, colours::kRamp.front());  // an unloaded body has the colour of one without values
+}
+
+TEST(Ramp, ClampsItsArgument) {
+  EXPECT_EQ(render::ramp(-3.0).r, render::ramp(0.0).r);
+  EXPECT_EQ(render::ramp(2.0).b, render::ramp(1.0).b);
+}
+
+TEST(ColourOf, ReadsHexadecimalDigits) {
+  const render::Rgb c = render::colour_of("#ff8000");
+  EXPECT_EQ(c.r, 1.0f);
+  EXPECT_EQ(c.g, 128.0f / 255.0f);
+  EXPECT_EQ(c.b, 0.0f);
+  for (const char* bad : {"ff8000", "#ff800", "#ff80gg", "#FF8000"})
+    EXPECT_THROW(render::colour_of(bad), InternalError) << bad;
 }
 
 TEST(Settled, FillsOpenEndsAndIsFinite) {

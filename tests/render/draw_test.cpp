@@ -80,10 +80,10 @@ TEST(Draw, ColoursFollowTheValues) {
   const Picture picture = render::draw(scene, options);
   for (const int x : {60, 120, 200, 260, 330}) {
     const double value = (x + 0.5 - kPixels / 2) / kRadiusPixels;  // in units of the radius
-    expect_colour(picture, x, kPixels / 2, render::viridis(0.5 + 0.5 * value), 2.5);
+    expect_colour(picture, x, kPixels / 2, render::ramp(0.5 + 0.5 * value), 2.5);
   }
   ball.values.setConstant(0.5 * kRadius);  // three quarters of the scale
-  expect_colour(render::draw(scene, options), kPixels / 2, kPixels / 2, render::viridis(0.75), 1.0);
+  expect_colour(render::draw(scene, options), kPixels / 2, kPixels / 2, render::ramp(0.75), 1.0);
 }
 
 TEST(Draw, LightComesFromAboveAndTheLeft) {
@@ -229,5 +229,5 @@ TEST(Draw, ABodyAtRestHasOneColourAndOneNumber) {
   scene.scale = {"displacement", "m"};
   scene.scale.resolution = 1e-10;
   const Picture picture = render::draw(scene, plain_options());
-  for (const int x : {100, 200, 300}) expect_colour(picture, x, kPixels / 2, render::viridis(0.0), 1.0);
+  for (const int x : {100, 200, 300}) expect_colour(picture, x, kPixels / 2, render::ramp(0.0), 1.0);
 }

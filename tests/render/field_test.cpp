@@ -18,7 +18,7 @@ TEST(Field, PaintsEachValueRowsFromBelow) {
   ASSERT_GT(picture.height, 200);
   const int left = 28, top = 56;
   const auto expect = [&](int x, int y, double t) {
-    const render::Rgb c = render::viridis(t);
+    const render::Rgb c = render::ramp(t);
     EXPECT_NEAR(picture.pixel(x, y)[0], 255.0 * c.r, 1.0);
     EXPECT_NEAR(picture.pixel(x, y)[1], 255.0 * c.g, 1.0);
     EXPECT_NEAR(picture.pixel(x, y)[2], 255.0 * c.b, 1.0);
@@ -45,7 +45,7 @@ TEST(Field, TheGreatestValueHasTheColourOfTheMaximum) {
   const render::Picture picture =
       render::draw_field(field, {"penetration", "m", 0.0}, "a title", magnify, "a line under it");
   const auto expect = [&](int column, int row, double t) {
-    const render::Rgb c = render::viridis(t);
+    const render::Rgb c = render::ramp(t);
     const std::uint8_t* p =
         picture.pixel(left + column * magnify + magnify / 2, top + (1 - row) * magnify + magnify / 2);
     EXPECT_NEAR(p[0], 255.0 * c.r, 1.0) << column << ", " << row;
