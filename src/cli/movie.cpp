@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "print_run.h"
 #include "recorded_scene.h"
+#include "scene_options.h"
 #include "session/recorded_movie.h"
 
 namespace palpate::cli {
@@ -24,8 +25,8 @@ int movie(const session::MovieOptions& options) {
     callbacks.stop = &stop_flag();
     return session::draw_recorded_movie(
         options,
-        [](const std::string& text, const std::filesystem::path& folder) {
-          return recorded_scene(text, folder);
+        [&options](const std::string& text, const std::filesystem::path& folder) {
+          return recorded_scene(text, folder, options.overrides);
         },
         callbacks, missing);
   }();
@@ -44,7 +45,8 @@ void add_movie(CLI::App& app, Invocation& invocation) {
       ->required()
       ->type_name("DIR");
   command
-      ->add_option("-o,--output", arguments->file, "the movie (.webm, .png or .apng); default DIR/movie.png")
+      ->add_option("-o,--output", arguments->file,
+                   "the movie (.mp4, .webm, .png or .apng); default DIR/movie.png")
       ->type_name("FILE");
   command->add_option("--fps", arguments->fps, "frames per second of playback; default at most 25")
       ->type_name("N")
@@ -56,9 +58,10 @@ void add_movie(CLI::App& app, Invocation& invocation) {
   command->add_option("--shade", arguments->shade, "quantity that colours the bodies: displacement or stress")
       ->type_name("NAME")
       ->check(CLI::IsMember({"displacement", "stress", "penetration"}));
+  add_view(*command, arguments->overrides);
   command->footer(R"(Examples:
   palpate movie out/press-ball
-  palpate movie out/press-ball --slow 4 --shade stress -o touch.webm
+  palpate movie out/press-ball --slow 4 --shade stress -o touch.mp4 --view front
 
 Shows the recorded states (record.state_period_s), also of an interrupted run, with the force on the hand
 below.  Nothing is computed again.)");

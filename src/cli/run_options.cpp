@@ -22,7 +22,8 @@ constexpr const char* kRunExamples = R"(Examples:
   palpate run press-ball --against-monolithic    error of its force
   palpate run two-heads --contact-picture        contact regions, depths and proxies
   palpate run press-ball --movie press.png --slow 4       a quarter of the speed; browsers play it
-  palpate run touch-head --movie touch.webm --size 640x580
+  palpate run touch-head --movie touch.mp4 --size 640x580
+  palpate run touch-head --picture --view left --zoom 2
   palpate run touch-head --frames --frames-per-s 50 --shade penetration
 
 Writes into the output folder: run.vtkhdf (states as a time series: ParaView 5.12, h5py), run.xdmf (the same
@@ -30,17 +31,17 @@ for older ParaViews: it points into run.vtkhdf), force.csv (force and torque on 
 (versions, options, counts, timings).  Ctrl-C ends the run; the data recorded until then are complete.  For
 other programs see `palpate export`.
 
-Movies have the suffix .webm, which requires the Debian package ffmpeg, or .png.  For other formats the run
-prints the ffmpeg command that converts --frames, with their rate:
-  ffmpeg -framerate 50 -i out/touch-head/frames/%04d.png -pix_fmt yuv420p touch-head.mp4
+Movies have the suffix .mp4 (H.264) or .webm (VP9), which require the Debian package ffmpeg, or .png.  For
+other formats the run prints the ffmpeg command that converts --frames, with their rate:
+  ffmpeg -framerate 50 -i out/touch-head/frames/%04d.png touch-head.gif
 Both are drawn after the run.  Ctrl-C ends the run, and the frames up to then are drawn; a second Ctrl-C ends
 the drawing.  The frames written until then, and a movie of them, are complete.)";
 
 void add_movie_options(CLI::App& command, session::Options& options) {
   command
       .add_option("--movie", options.movie,
-                  "also a movie of the run, with the force below: .webm (by ffmpeg), .png or .apng (animated "
-                  "PNG, without ffmpeg)")
+                  "also a movie of the run, with the force below: .mp4 or .webm (by ffmpeg), .png or .apng "
+                  "(animated PNG, without ffmpeg)")
       ->type_name("FILE");
   command
       .add_option("--fps", options.fps,
@@ -59,8 +60,9 @@ void add_movie_options(CLI::App& command, session::Options& options) {
 }
 
 void add_picture_options(CLI::App& command, session::Options& options) {
-  command.add_flag("--picture", options.picture,
-                   "also a picture at the largest force, or at the end without a tool (picture.png)");
+  command.add_flag(
+      "--picture", options.picture,
+      "also a picture at the largest force; without a tool, of the largest value of --shade (picture.png)");
   command.add_flag(
       "--contact-picture", options.contact_picture,
       "also two pictures of the largest contact force: proxies in contact, penetration of the "
@@ -76,6 +78,7 @@ void add_picture_options(CLI::App& command, session::Options& options) {
       ->type_name("NUMBER")
       ->check(CLI::PositiveNumber);
   add_movie_options(command, options);
+  add_view(command, options.scene.overrides);
   command
       .add_option("--shade", options.shade,
                   "quantity that colours picture, frames and movie: displacement, stress or penetration")

@@ -25,17 +25,24 @@ constexpr const char* kProgram = "ffmpeg";
 
 [[noreturn]] void fail_not_found() {
   fail(
-      "ffmpeg was not found, and WebM movies require it; install the package ffmpeg, or give a file name "
+      "ffmpeg was not found, and .mp4 and .webm movies require it; install the package ffmpeg, or give a "
+      "file name "
       "that ends in .png");
 }
 
-/// Returns the last line of the log of ffmpeg, which states the error.
-std::string last_line(int log) {
+/// Returns the end of the log of ffmpeg.
+std::string read_log(int log) {
   std::string text(1 << 16, '\0');
   const off_t size = lseek(log, 0, SEEK_END);
   const auto kept = static_cast<off_t>(text.size());
   const ssize_t count = pread(log, text.data(), text.size(), size > kept ? size - kept : 0);
   text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+  return text;
+}
+
+/// Returns the last line of a log, which states the error.
+std::string last_line(int log) {
+  std::string text = read_log(log);
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
   const std::size_t begin = text.find_last_of("\r\n");
   if (begin != std::string::npos) text.erase(0, begin + 1);
@@ -44,7 +51,9 @@ std::string last_line(int log) {
 
 }  // namespace
 
-void check_ffmpeg() {
+namespace {
+
+void find_ffmpeg() {
   const char* variable = std::getenv("PATH");
   const std::string path = variable ? variable : "";
   for (std::size_t begin = 0; begin <= path.size();) {
@@ -54,6 +63,21 @@ void check_ffmpeg() {
     begin = end + 1;
   }
   fail_not_found();
+}
+
+}  // namespace
+
+void check_ffmpeg(const std::string& encoder) {
+  find_ffmpeg();
+  if (encoder.empty()) return;
+  Ffmpeg list({"-hide_banner", "-encoders"});
+  list.finish();
+  if (list.output().find(" " + encoder + " ") == std::string::npos)
+    fail(
+        "this ffmpeg has no encoder {} (`ffmpeg -encoders`), which .mp4 movies require; install Debian's "
+        "package "
+        "ffmpeg, or give a file name that ends in .webm or .png",
+        encoder);
 }
 
 // A socket, not a pipe: with MSG_NOSIGNAL, writing to an ffmpeg that has ended is an error, not a signal.
@@ -120,6 +144,8 @@ void Ffmpeg::write(const void* bytes, std::size_t count) {
     count -= static_cast<std::size_t>(sent);
   }
 }
+
+std::string Ffmpeg::output() const { return read_log(log_); }
 
 void Ffmpeg::finish() {
   const int status = wait();

@@ -7,9 +7,11 @@
 
 namespace palpate::session {
 
-/// Checks that ffmpeg is on the PATH.
-/// @throws Error with the name of the Debian package if it is not
-void check_ffmpeg();
+/// Checks that ffmpeg is on the PATH, and that it has an encoder.
+/// @param encoder  name of the encoder, as in `ffmpeg -encoders`; empty: not checked
+/// @throws Error with the name of the Debian package if there is no ffmpeg, or with the encoder if it is
+/// missing
+void check_ffmpeg(const std::string& encoder = {});
 
 /// Child process ffmpeg that reads the bytes written here. Ctrl-C does not reach it: it completes its file
 /// when its input ends.
@@ -29,6 +31,8 @@ class Ffmpeg {
   /// Closes the input and waits until ffmpeg has completed its file.
   /// @throws Error with the message of ffmpeg if it failed
   void finish();
+  /// Returns the output of ffmpeg so far, its last 64 KiB.
+  std::string output() const;
 
  private:
   int wait();

@@ -71,12 +71,28 @@ class AnimatedPng final : public Movie {
   std::optional<render::AnimationWriter> writer_;
 };
 
+using Words = std::vector<std::string>;
+
 /// VP9 at constant quality: with -b:v 0 the size of the file follows from -crf (0 to 63, 0 is the best
 /// quality).
-class WebM final : public Movie {
+Words webm_options() {
+  return {"-c:v",      "libvpx-vp9", "-crf",    "30", "-b:v",     "0",       "-deadline", "good",
+          "-cpu-used", "4",          "-row-mt", "1",  "-pix_fmt", "yuv420p", "-f",        "webm"};
+}
+
+/// H.264 at constant quality (-crf 0 to 51), with the index at the start of the file, so that a browser plays
+/// it while it loads.
+Words mp4_options() {
+  return {"-c:v",     "libx264", "-crf",      "20",         "-preset", "medium",
+          "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f",      "mp4"};
+}
+
+/// Movie that ffmpeg encodes.
+class EncodedMovie final : public Movie {
  public:
-  WebM(const std::string& path, double frame_s) : Movie(path), frame_(render::fraction_of(frame_s)) {}
-  ~WebM() override { ffmpeg_.reset(); }  // ends ffmpeg before its draft is removed
+  EncodedMovie(const std::string& path, double frame_s, Words options)
+      : Movie(path), frame_(render::fraction_of(frame_s)), options_(std::move(options)) {}
+  ~EncodedMovie() override { ffmpeg_.reset(); }  // ends ffmpeg before its draft is removed
 
  private:
   void put(const render::Picture& picture) override {
@@ -88,28 +104,15 @@ class WebM final : public Movie {
   void start(int width, int height) {
     const std::string size = fmt::format("{}x{}", width, height),
                       rate = fmt::format("{}/{}", frame_.denominator, frame_.numerator);
-    std::vector<std::string> words;
-    for (const auto& [option, value] :
-         std::initializer_list<std::pair<std::string, std::string>>{{"-loglevel", "error"},
-                                                                    {"-f", "rawvideo"},
-                                                                    {"-pixel_format", "rgba"},
-                                                                    {"-video_size", size},
-                                                                    {"-framerate", rate},
-                                                                    {"-i", "pipe:0"},
-                                                                    {"-c:v", "libvpx-vp9"},
-                                                                    {"-crf", "30"},
-                                                                    {"-b:v", "0"},
-                                                                    {"-deadline", "good"},
-                                                                    {"-cpu-used", "4"},
-                                                                    {"-row-mt", "1"},
-                                                                    {"-pix_fmt", "yuv420p"},
-                                                                    {"-f", "webm"}})
-      words.insert(words.end(), {option, value});
+    Words words = {"-loglevel", "error",      "-f", "rawvideo", "-pixel_format", "rgba", "-video_size",
+                   size,        "-framerate", rate, "-i",       "pipe:0"};
+    words.insert(words.end(), options_.begin(), options_.end());
     words.insert(words.end(), {"-xerror", "-y", "file:" + draft_of(path_)});
     ffmpeg_.emplace(words);
   }
 
   render::Fraction frame_;
+  Words options_;
   std::optional<Ffmpeg> ffmpeg_;
 };
 
@@ -117,9 +120,12 @@ class WebM final : public Movie {
 
 void check_movie(const std::string& path) {
   const std::string ending = ending_of(path);
-  if (ending != ".webm" && ending != ".png" && ending != ".apng")
-    fail("--movie {}: unknown kind \"{}\"; end the name in .webm (by ffmpeg), .png or .apng (animated PNG)",
-         path, ending);
+  if (ending != ".mp4" && ending != ".webm" && ending != ".png" && ending != ".apng")
+    fail(
+        "--movie {}: unknown kind \"{}\"; end the name in .mp4 or .webm (by ffmpeg), .png or .apng (animated "
+        "PNG)",
+        path, ending);
+  if (ending == ".mp4") check_ffmpeg("libx264");
   if (ending == ".webm") check_ffmpeg();
   const fs::path folder = fs::path(path).parent_path();
   std::error_code error;
@@ -133,7 +139,8 @@ void check_movie(const std::string& path) {
 }
 
 std::unique_ptr<FrameSink> make_movie(const std::string& path, double frame_s) {
-  if (ending_of(path) == ".webm") return std::make_unique<WebM>(path, frame_s);
+  if (ending_of(path) == ".mp4") return std::make_unique<EncodedMovie>(path, frame_s, mp4_options());
+  if (ending_of(path) == ".webm") return std::make_unique<EncodedMovie>(path, frame_s, webm_options());
   return std::make_unique<AnimatedPng>(path, frame_s);
 }
 

@@ -8,6 +8,9 @@
 #include "core/missing_outputs.h"
 #include "palpate/core/error.h"
 #include "render/seen.h"
+#include "session/scene_view.h"
+#include "session/shade_values.h"
+#include "session/snapshot_scene.h"
 
 namespace palpate::session {
 namespace {
@@ -54,9 +57,9 @@ struct Common {
   render::View from;
 };
 
-Common common_of(const loop::World& world, SnapshotSpool& snapshots, Shade shade) {
+Common common_of(const loop::World& world, SnapshotSpool& snapshots, Shade shade, double largest) {
   Common out;
-  double least = INFINITY, greatest = -INFINITY;
+  const bool known = largest > 0.0;
   Extremes extremes;
   render::ViewChoice choice;
   constexpr int kLooked = 8;  // snapshots examined, evenly spaced
@@ -66,21 +69,17 @@ Common common_of(const loop::World& world, SnapshotSpool& snapshots, Shade shade
   for (WorldSnapshot snapshot; snapshots.next(snapshot); ++number) {
     const render::Scene scene = scene_of(world, snapshot, shade);
     if (number % between == between / 2) choice.add(scene);
-    out.scale = scene.scale;
-    for (const render::Surface& surface : scene.surfaces) {
-      extremes.add(surface.points);
-      for (const double v : surface.values)
-        if (std::isfinite(v)) least = std::min(least, v), greatest = std::max(greatest, v);
-    }
+    if (!known) largest = std::max(largest, largest_value(world, snapshot, shade));
+    for (const render::Surface& surface : scene.surfaces) extremes.add(surface.points);
   }
-  out.scale = render::settled(out.scale, least, greatest);
   render::Scene all;
   all.surfaces.emplace_back().points = extremes.points();
   out.view = view_of(all);
+  out.scale = colour_scale(world, shade, out.view.extent, largest);
   add_obstacles(all, world, out.view);
   for (const render::Surface& surface : all.surfaces) extremes.add(surface.points);
   out.frame = extremes.points();
-  out.from = choice.best(!all.ground);
+  out.from = scene_view(world.description.view, choice.best(!all.ground));
   return out;
 }
 
@@ -228,11 +227,11 @@ void MovieFrames::keep(WorldSnapshot snapshot) {
 }
 
 void MovieFrames::save(const loop::World& world, const std::vector<FrameSink*>& sinks,
-                       const Callbacks& callbacks, MissingOutputs& missing) {
+                       const Callbacks& callbacks, MissingOutputs& missing, double largest) {
   Writer writer(sinks, missing);
   try {
     if (snapshots_.count() == 0) fail("the run ended before the first frame");
-    const Common common = common_of(world, snapshots_, shade_);
+    const Common common = common_of(world, snapshots_, shade_, largest);
     render::Options options;
     options.width = width_;
     options.height = height_;

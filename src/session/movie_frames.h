@@ -59,8 +59,9 @@ class MovieFrames : public loop::Observer {
   /// repeat the last one. A stop ends drawing after the current frame: sinks are then closed with the frames
   /// that they have.
   /// @param missing    receives failures of drawing and of sinks; the other sinks continue
+  /// @param largest    largest value of the run, the upper end of the range of colours; 0: that of the frames
   void save(const loop::World& world, const std::vector<FrameSink*>& sinks, const Callbacks& callbacks,
-            MissingOutputs& missing);
+            MissingOutputs& missing, double largest = 0.0);
   int count() const;  ///< Number of frames for the simulated time so far
 
  private:

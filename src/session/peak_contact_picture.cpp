@@ -13,13 +13,14 @@
 #include "render/field.h"
 #include "render/marks.h"
 #include "render/panels.h"
+#include "session/snapshot_scene.h"
 
 namespace palpate::session {
 namespace {
 
 constexpr render::Rgb kHullA = {0.16f, 0.44f, 0.70f}, kHullB = {0.85f, 0.45f, 0.13f},
-                      kEdge = {0.18f, 0.20f, 0.24f}, kVertex = {0.93f, 0.16f, 0.22f},
-                      kPlain = {0.74f, 0.76f, 0.79f};
+                      kEdge = {0.18f, 0.20f, 0.24f}, kVertex = {0.00f, 0.62f, 0.75f},
+                      kPlain = {0.80f, 0.79f, 0.77f};
 constexpr int kPanel = 800;      ///< Edge of a panel [pixels]
 constexpr double kSharp = 25.0;  ///< Smallest dihedral angle of the hull edges that are drawn: the edges of
                                  ///< all facets would hide one another [deg]

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "palpate/scene/description.h"
 #include "session/callbacks.h"
@@ -11,11 +12,12 @@ namespace palpate::session {
 
 /// Options of a movie of a finished run.
 struct MovieOptions {
-  std::string run;                     ///< Folder of a run
-  std::string file;                    ///< Movie file; empty: movie.png in that folder
-  double fps = 0.0, slow = 1.0;        ///< Playback; fps = 0: 25, or the rate of the recorded states
-  std::string size;                    ///< "640x480"; empty: default size
-  std::string shade = "displacement";  ///< Or "stress"
+  std::string run;                          ///< Folder of a run
+  std::string file;                         ///< Movie file; empty: movie.png in that folder
+  double fps = 0.0, slow = 1.0;             ///< Playback; fps = 0: 25, or the rate of the recorded states
+  std::string size;                         ///< "640x480"; empty: default size
+  std::string shade = "displacement";       ///< Or "stress"
+  std::vector<std::string> overrides = {};  ///< Changes of the scene's [view], KEY=VALUE
 };
 
 /// Function that returns the scene of a run from the text that the run kept and from its folder, as

@@ -32,7 +32,7 @@ PictureOptions check_pictures(const Options& options, const scene::Description& 
 
 RunPictures::RunPictures(loop::World& world, const Options& options, const PictureOptions& pictures,
                          const std::string& folder)
-    : options_(options), folder_(folder), picture_(pictures.shade) {
+    : options_(options), folder_(folder), largest_(pictures.shade), picture_(pictures.shade) {
   if (options.draws_frames())
     frames_.emplace(world, folder, pictures.shade, pictures.between_s,
                     options.duration_s > 0.0 ? options.duration_s : world.description.duration_s,
@@ -42,6 +42,7 @@ RunPictures::RunPictures(loop::World& world, const Options& options, const Pictu
 
 std::vector<loop::Observer*> RunPictures::observers() {
   std::vector<loop::Observer*> out;
+  if (options_.picture || frames_) out.push_back(&largest_);
   if (options_.picture) out.push_back(&picture_);
   if (options_.contact_picture) out.push_back(&contact_picture_);
   if (frames_) out.push_back(&*frames_);
@@ -52,7 +53,7 @@ void RunPictures::save_pictures(const loop::World& world, MissingOutputs& missin
   if (options_.picture) {
     const std::string path = (std::filesystem::path(folder_) / "picture.png").string();
     try {
-      picture_.save(world, path);
+      picture_.save(world, path, largest_.value());
     } catch (const Error& e) { missing.add("picture " + path, e.what()); }
   }
   if (options_.contact_picture) contact_picture_.save(world, folder_, missing);
@@ -75,7 +76,7 @@ std::optional<DrawnFrames> RunPictures::draw_frames(const loop::World& world, co
     out.movie = options_.movie;
     sinks.push_back((movie = make_movie(out.movie, out.shown_s)).get());
   }
-  frames_->save(world, sinks, callbacks, missing);
+  frames_->save(world, sinks, callbacks, missing, largest_.value());
   if (pictures) out.in_folder = pictures->written();
   if (movie) out.in_movie = movie->written();
   int least = out.count;

@@ -9,6 +9,7 @@
 #include "session/peak_contact_picture.h"
 #include "session/peak_force_picture.h"
 #include "session/run_output.h"
+#include "session/shade_values.h"
 
 /// Pictures and movies of a run, drawn when it is over.
 namespace palpate::session {
@@ -42,6 +43,7 @@ class RunPictures {
  private:
   const Options& options_;
   std::string folder_;
+  LargestValue largest_;
   PeakForcePicture picture_;
   PeakContactPicture contact_picture_;
   std::optional<MovieFrames> frames_;

@@ -7,9 +7,25 @@
 #include "palpate/core/log.h"
 #include "session/command_line.h"
 #include "session/reference_remarks.h"
+#include "session/shade.h"
 #include "store/atomic_file.h"
 
 namespace palpate::session {
+namespace {
+
+/// Adds what the pictures of the page share with those of the run: the view, and the free bodies.
+void add_pictures(store::Summary& summary, const scene::Description& d) {
+  const auto list = [](const Vec3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
+  store::SummaryFields fields;
+  if (const auto free = free_bodies(d); !free.empty()) fields.emplace_back("free_bodies", free);
+  if (d.view.direction) fields.emplace_back("view_direction", list(*d.view.direction));
+  if (d.view.target_m) fields.emplace_back("view_target_m", list(*d.view.target_m));
+  if (d.view.zoom != 1.0) fields.emplace_back("view_zoom", d.view.zoom);
+  if (d.view.up != Vec3::UnitZ()) fields.emplace_back("view_up", list(d.view.up));
+  if (!fields.empty()) summary.section("pictures").values = fields;
+}
+
+}  // namespace
 
 store::Summary summary_of(const loop::World& world, const RunOutput& ran, const Options& options,
                           const std::optional<Outcome>& outcome) {
@@ -20,6 +36,7 @@ store::Summary summary_of(const loop::World& world, const RunOutput& ran, const 
     compare::add_to_summary(summary, world.description, *ran.against_every_tick, "virtual_time");
   if (const double every_s = options.checkpoint_every_s; every_s > 0.0)
     loop::add_checkpoints(summary, ran.checkpoints, every_s);
+  add_pictures(summary, world.description);
   summary.command = command_of(options);
   summary.overrides = options.scene.overrides;
   summary.remarks = log::warnings();

@@ -207,8 +207,9 @@ class Frames(Movie):
 
 class Refusals(Movie):
     def test_arguments(self):
-        for name in "a.gif", "a.mp4", "a", "png", "a.png.txt":
-            self.assertIn(".webm (by ffmpeg), .png or .apng", self.refused(*self.press(0.1, "--movie", name)))
+        for name in "a.gif", "a.mkv", "a", "png", "a.png.txt":
+            self.assertIn(".mp4 or .webm (by ffmpeg), .png or .apng",
+                          self.refused(*self.press(0.1, "--movie", name)))
         movie = self.press(0.1, "--movie", "a.png")
         self.assertIn("100 per second of simulated time", self.refused(*movie, "--fps", "101"))
         self.assertIn("--fps 25 --slow 5", self.refused(*movie, "--fps", "25", "--slow", "5"))
@@ -269,14 +270,38 @@ class Refusals(Movie):
                       (self.folder / "arguments").read_text())
 
 
-class WebM(Movie):
+    def test_mp4_requires_an_encoder(self):
+        text = self.refused(*self.press(0.1, "--movie", "a.mp4"), PATH="/nowhere")
+        self.assertIn("install the package ffmpeg", text)
+        lists = 'if [ "$2" = -encoders ]; then echo " V....D libvpx-vp9  VP9 "; exit 0; fi\n'
+        script = 'printf "%s\\n" "$*" >arguments\nfor draft; do :; done\ncat >"${draft#file:}"\n'
+        path = self.fake_ffmpeg(lists + script)
+        text = self.refused(*self.press(0.1, "--movie", "a.mp4"), **path)
+        self.assertIn("no encoder libx264", text)
+        self.assertIn(".webm or .png", text)
+        (self.folder / "bin/ffmpeg").write_text(
+            "#!/bin/sh\n" + lists.replace("libvpx-vp9  VP9", "libx264  H.264") + script)
+        self.good(*self.press(0.2, "--movie", "a.MP4"), **path)
+        self.assertEqual((self.folder / "a.MP4").stat().st_size, 5 * WIDTH * HEIGHT * 4)
+        arguments = (self.folder / "arguments").read_text()
+        for word in "-c:v libx264", "-pix_fmt yuv420p", "-movflags +faststart", "-f mp4", "file:a.MP4.part":
+            self.assertIn(word, arguments)
+
+
+class Encoded(Movie):
+    def test_webm_plays(self):
+        self.plays("a.webm", "vp9")
+
+    def test_mp4_plays(self):
+        self.plays("a.mp4", "h264")
+
     @unittest.skipUnless(FFMPEG and FFPROBE, "SKIPPED: there is no ffmpeg (package ffmpeg)")
-    def test_it_plays(self):
-        self.good(*self.press(0.4, "--movie", "a.webm", "--slow", "2", "-o", "here"))
-        probe = [FFPROBE, "-v", "error", "-count_frames", "-show_streams", "-of", "json", "a.webm"]
+    def plays(self, name, codec):
+        self.good(*self.press(0.4, "--movie", name, "--slow", "2", "-o", "here"))
+        probe = [FFPROBE, "-v", "error", "-count_frames", "-show_streams", "-of", "json", name]
         streams = json.loads(subprocess.run(probe, cwd=self.folder, check=True, capture_output=True).stdout)
         video, = streams["streams"]
-        self.assertEqual(video["codec_name"], "vp9")
+        self.assertEqual(video["codec_name"], codec)
         self.assertEqual((video["width"], video["height"]), (WIDTH, HEIGHT))
         self.assertEqual(video["nb_read_frames"], "20")
         self.assertEqual(video["r_frame_rate"], "25/1")

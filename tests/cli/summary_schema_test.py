@@ -160,7 +160,9 @@ class Schema(Cli):
         self.assertEqual(error["hand"], "tool")
         self.assertLess(error["force_error_rms_of_peak"], 0.1)
         take("run", "press-ball", "--duration-s", "0.05", "--checkpoint-every", "0.02")
-        take("run", "one-tet", "--duration-s", "0.05")
+        figures = take("run", "one-tet", "--duration-s", "0.05", "--view", "left", "--zoom", "2",
+                       *change("view.target_m=[0.1, 0, 0]", "view.up=[0, 1, 0]"))
+        self.assertEqual(figures["pictures"]["view_direction"], [-1, 0, 0])
         take("stability", "--haptic", "press-ball")
         take("compare", "--haptic", "press-ball", "--duration-s", "0.06", "--repeats", "1",
              *change("compare.haptic.exchange_periods_s=[0.02, 0.01]",
