@@ -56,6 +56,16 @@ Page& Page::add_code(const std::string& text) {
   return *this;
 }
 
+Page& Page::begin_lead() {
+  body_ += "<div class=\"lead\">\n";
+  return *this;
+}
+
+Page& Page::end_lead() {
+  body_ += "</div>\n";
+  return *this;
+}
+
 Page& Page::begin_multiples() {
   body_ += "<div class=\"multiples\">\n";
   return *this;

@@ -45,6 +45,9 @@ class Page {
   Page& add_fragment(const std::string& html);
   Page& add_code(const std::string& text);
 
+  /// Shows a picture and the content after it, added between these two calls, side by side if there is room.
+  Page& begin_lead();
+  Page& end_lead();
   /// Shows the figures added between these two calls side by side if there is room.
   Page& begin_multiples();
   Page& end_multiples();

@@ -86,6 +86,9 @@ std::string plot_json(const Plot& plot) {
   if (!std::isfinite(plot.floor_y)) out["floor_y"] = nullptr;
   out["levels"] = Json::array();
   for (const Level& level : plot.levels) out["levels"].push_back({{"y", level.y}, {"label", level.label}});
+  out["spans"] = Json::array();
+  for (const Span& span : plot.spans)
+    out["spans"].push_back({{"from", span.from}, {"to", span.to}, {"label", span.label}});
   out["series"] = Json::array();
   std::size_t next = 0;
   for (const Series& series : plot.series) {

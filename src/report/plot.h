@@ -41,12 +41,19 @@ struct Level {
   std::string label;
 };
 
+/// Part of the x axis with a name: a phase of a motion.
+struct Span {
+  double from, to;
+  std::string label;
+};
+
 /// Plot of several series.
 struct Plot {
   std::string title, x_label, y_label;
   bool log_x = false, log_y = false;
   std::vector<Series> series;
   std::vector<Level> levels = {};
+  std::vector<Span> spans = {};  ///< In order, without overlap
   /// Upper end of the shaded area: the error of the reference; NaN: none
   double floor_y = std::numeric_limits<double>::quiet_NaN();
   std::string floor_label = {};

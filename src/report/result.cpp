@@ -155,15 +155,19 @@ Result open_result(const fs::path& dir) {
   return out;
 }
 
-void add_result(Page& page, const Result& result) {
+void add_result(Page& page, const Result& result, const FirstView& view, bool picture) {
   const fs::path& dir = result.dir;
   const auto has = [&](const char* name) { return fs::exists(dir / name); };
   const auto csv = [&](const char* name) { return read_csv(dir / name); };
+  const bool has_picture = picture && has(kPicture);
+  if (has_picture) page.begin_lead().add_png(dir / kPicture, "");
   page.add_answer(result.answers);
+  if (has_picture) page.end_lead();
   if (has("run.vtkhdf"))
-    add_motion(page, dir / "run.vtkhdf", has("force.csv") ? time_of_peak_force(csv("force.csv")) : kUnknown);
+    add_motion(page, dir / "run.vtkhdf", result.summary,
+               has("force.csv") ? time_of_peak_force(csv("force.csv")) : kUnknown, view);
   add_pictures(page, dir);
-  if (has("force.csv")) add_forces(page, result.summary, csv("force.csv"));
+  if (has("force.csv")) add_forces(page, result.summary, csv("force.csv"), dir);
   if (has("clock.csv")) add_clock(page, csv("clock.csv"));
   if (has("trace.csv")) add_trace(page, csv("trace.csv"));
   if (has("compare.csv")) {

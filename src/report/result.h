@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "json.h"
+#include "report/first_view.h"
 #include "report/page.h"
 
 namespace palpate::report {
@@ -24,7 +25,8 @@ struct Result {
 /// @throws Error if it is no folder, contains no results, or one of its files is invalid
 Result open_result(const std::filesystem::path& dir);
 
-/// Adds all of the result to the page, its answers first.
-void add_result(Page& page, const Result& result);
+/// Adds all of the result to the page, its picture and its answers first.
+/// @param picture  whether the picture is added, if there is one
+void add_result(Page& page, const Result& result, const FirstView& view, bool picture = true);
 
 }  // namespace palpate::report

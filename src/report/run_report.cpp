@@ -7,6 +7,7 @@
 #include "core/missing_outputs.h"
 #include "palpate/core/error.h"
 #include "result.h"
+#include "sections.h"
 
 namespace palpate::report {
 namespace {
@@ -22,13 +23,13 @@ RunReport written(const Page& page, const fs::path& path) {
 
 RunReport write_run_report(const fs::path& dir) { return write_report({dir}, dir / "report.html"); }
 
-RunReport write_report(const std::vector<fs::path>& dirs, const fs::path& path) {
+RunReport write_report(const std::vector<fs::path>& dirs, const fs::path& path, const FirstView& view) {
   PALPATE_CHECK(!dirs.empty(), "a report needs at least one directory");
   std::vector<Result> results;
   for (const fs::path& dir : dirs) results.push_back(open_result(dir));
   if (results.size() == 1) {
     Page page(results[0].title());
-    add_result(page, results[0]);
+    add_result(page, results[0], view);
     return written(page, path);
   }
   Page page(fmt::format("palpate: {} results", results.size()));
@@ -37,10 +38,15 @@ RunReport write_report(const std::vector<fs::path>& dirs, const fs::path& path) 
     links.push_back({fmt::format("result-{}", i + 1),
                      fmt::format("{} ({})", results[i].title(), results[i].dir.generic_string()),
                      results[i].first_answer()});
+  // The picture of the first run is at the head of the page, beside the list of results.
+  const fs::path picture = dirs[0] / kPicture;
+  const bool has_picture = fs::exists(picture);
+  if (has_picture) page.begin_lead().add_png(picture, "");
   page.add_contents(links);
+  if (has_picture) page.end_lead();
   for (std::size_t i = 0; i < results.size(); ++i) {
     page.begin_part(links[i].id, links[i].title);
-    add_result(page, results[i]);
+    add_result(page, results[i], view, i > 0 || !has_picture);
     page.end_part();
   }
   return written(page, path);

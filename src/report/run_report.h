@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "report/first_view.h"
 #include "report/page.h"
 
 namespace palpate {
@@ -26,7 +27,8 @@ struct RunReport {
 /// paragraph with the reason, and the page is still written.
 /// @throws Error if a directory contains none of these files, or one of them is invalid
 /// @pre dirs not empty
-RunReport write_report(const std::vector<std::filesystem::path>& dirs, const std::filesystem::path& path);
+RunReport write_report(const std::vector<std::filesystem::path>& dirs, const std::filesystem::path& path,
+                       const FirstView& view = {});
 
 /// Writes the page of one directory, DIR/report.html.
 RunReport write_run_report(const std::filesystem::path& dir);

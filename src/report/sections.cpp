@@ -7,6 +7,7 @@
 
 #include "palpate/core/error.h"
 #include "report/force_plot.h"
+#include "touch_phases.h"
 
 namespace palpate::report {
 namespace {
@@ -119,16 +120,13 @@ void add_figures(Page& page, const Json& summary) {
 void add_pictures(Page& page, const fs::path& dir) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(dir))
-    if (entry.path().extension() == ".png") files.push_back(entry.path());
+    if (entry.path().extension() == ".png" && entry.path().filename() != kPicture)
+      files.push_back(entry.path());
   std::sort(files.begin(), files.end());
-  for (const fs::path& file : files) {
-    // "picture" is no useful caption; that picture contains a title
-    const std::string stem = file.stem().string();
-    page.add_png(file, stem == "picture" ? "" : sentence_case(stem));
-  }
+  for (const fs::path& file : files) page.add_png(file, sentence_case(file.stem().string()));
 }
 
-void add_forces(Page& page, const Json& summary, const Table& force) {
+void add_forces(Page& page, const Json& summary, const Table& force, const fs::path& dir) {
   const Json hands = list_of(summary, "hands"), hand = hands.empty() ? Json::object() : hands[0];
   page.add_heading("Force on the hand");
   if (force.rows.empty()) {
@@ -136,7 +134,12 @@ void add_forces(Page& page, const Json& summary, const Table& force) {
     return;
   }
   const double max_force = number_at(hand, "max_force_n"), max_torque = number_at(hand, "max_torque_n_m");
-  add_plot(page, force_plot(force, max_force), "force.csv",
+  const std::vector<Span> phases = touch_phases(read_touch(dir));
+  const auto with_phases = [&](Plot plot) {
+    plot.spans = phases;
+    return plot;
+  };
+  add_plot(page, with_phases(force_plot(force, max_force)), "force.csv",
            "Force of the device on the hand: world components and magnitude" + limit_text(max_force, "N"));
   constexpr double kRounding = 1e-15;  // [N m]
   const bool has_torque = std::any_of(force.headers.begin(), force.headers.end(), [&](const std::string& h) {
@@ -147,7 +150,7 @@ void add_forces(Page& page, const Json& summary, const Table& force) {
   if (!has_torque) page.add_paragraph("No torque: no moment acts on the tool in this scene.");
   if (has_torque)
     add_plot(
-        page, torque_plot(force, max_torque), "force.csv",
+        page, with_phases(torque_plot(force, max_torque)), "force.csv",
         "Torque of the device on the hand: world components and magnitude" + limit_text(max_torque, "N m"));
 }
 
@@ -168,8 +171,9 @@ void add_parts(Page& page, const Json& summary) {
 
 void add_provenance(Page& page, const Json& summary) {
   if (!summary.is_object() || !summary.contains("provenance")) return;
-  page.add_heading("Provenance");
+  page.begin_details("Provenance: version, machine and libraries");
   add_object(page, summary["provenance"], {});
+  page.end_details();
 }
 
 }  // namespace palpate::report

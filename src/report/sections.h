@@ -3,6 +3,7 @@
 #include <map>
 
 #include "json.h"
+#include "report/first_view.h"
 #include "report/page.h"
 #include "report/plot.h"
 #include "report/table.h"
@@ -18,8 +19,12 @@ void add_plot(Page& page, const Plot& plot, const std::string& file, const std::
 
 void add_head(Page& page, const Json& summary);     ///< Adds the description of the run, a few lines
 void add_figures(Page& page, const Json& summary);  ///< Adds all counts and times
-void add_pictures(Page& page, const std::filesystem::path& dir);
-void add_forces(Page& page, const Json& summary, const Table& force);
+/// Picture of a run, at the head of its page.
+inline constexpr const char* kPicture = "picture.png";
+void add_pictures(Page& page, const std::filesystem::path& dir);  ///< Adds the other pictures
+/// Adds force and torque on the hand.
+/// @param dir  folder of the run, whose haptic.h5 has the phases of the touch
+void add_forces(Page& page, const Json& summary, const Table& force, const std::filesystem::path& dir);
 /// Adds a comparison.
 /// @param references  references by scene
 /// @param rules       how runs were repeated and limited
@@ -49,8 +54,11 @@ void add_z_width(Page& page, const Table& z_width, const Json& summary);
 /// @param file  name of its file
 void add_bench(Page& page, const std::string& file, const Json& bench);
 /// Adds the view of the bodies over time; nothing if no step was recorded.
+/// @param summary     has the view of the pictures, the free bodies and the names of the tools
 /// @param shown_at_s  time shown first [s]; NaN: time of the largest displacement
-void add_motion(Page& page, const std::filesystem::path& vtkhdf, double shown_at_s);
+/// @param first       first view, in place of that of the pictures
+void add_motion(Page& page, const std::filesystem::path& vtkhdf, const Json& summary, double shown_at_s,
+                const FirstView& first);
 void add_parts(Page& page, const Json& summary);
 void add_provenance(Page& page, const Json& summary);
 

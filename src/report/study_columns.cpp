@@ -1,6 +1,7 @@
 #include "study_columns.h"
 
 #include <algorithm>
+#include <map>
 
 #include "json.h"
 #include "report/work_precision.h"
@@ -30,19 +31,27 @@ StudyColumns columns_of_study(const Table& study) {
 }
 
 std::string parameter_text(const std::string& name) {
+  static const std::map<std::string, std::string> words = {
+      {"youngs modulus", "Young's modulus"}, {"poissons ratio", "Poisson's ratio"},
+      {"rtol", "relative tolerance"},        {"step", "step size"},
+      {"state period", "period of states"},  {"spectral radius", "spectral radius at infinite frequency"}};
   const std::size_t dot = name.rfind('.');
-  if (dot == std::string::npos) return key_text(name);
+  std::string key = key_text(dot == std::string::npos ? name : name.substr(dot + 1));
+  const std::size_t unit = std::min(key.find(" ["), key.size());
+  if (const auto found = words.find(key.substr(0, unit)); found != words.end())
+    key.replace(0, unit, found->second);
+  if (dot == std::string::npos) return key;
   std::string owner = name.substr(0, dot);
   std::replace_if(
       owner.begin(), owner.end(), [](char c) { return c == '.' || c == '_'; }, ' ');
-  return owner + ": " + key_text(name.substr(dot + 1));
+  return owner + ": " + key;
 }
 
 std::vector<StudyFigure> shown_figures(const Table& study) {
   static const std::vector<StudyFigure> all = {{"peak_force_n", "peak force on the hand [N]"},
                                                {"largest_displacement_m", "largest displacement [m]"},
-                                               {"steps", "steps"},
-                                               {"cpu_s", "CPU [s]"}};
+                                               {"steps", "number of steps"},
+                                               {"cpu_s", "CPU time [s]"}};
   std::vector<StudyFigure> out;
   for (const StudyFigure& one : all)
     if (study.has(one.column) && distinct(study, one.column).size() > 1) out.push_back(one);

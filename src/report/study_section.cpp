@@ -107,6 +107,15 @@ bool is_logarithmic(std::vector<double> values, bool declared) {
   return unevenness(logs) < unevenness(values);
 }
 
+/// Returns whether the figures of a chart span decades, all of them positive; a logarithmic axis leaves out
+/// other values.
+bool spans_decades(const std::vector<Series>& series) {
+  double least = HUGE_VAL, greatest = 0.0;
+  for (const Series& one : series)
+    for (const double y : one.y) least = std::min(least, y), greatest = std::max(greatest, y);
+  return least > 0.0 && greatest >= kLogRatio * least;
+}
+
 void add_charts(Page& page, const Table& study, const StudyColumns& columns, const Json& summary) {
   const auto abscissa = abscissa_of(study, columns);
   if (!abscissa) return;
@@ -126,9 +135,10 @@ void add_charts(Page& page, const Table& study, const StudyColumns& columns, con
       add_series(plot, study, groups[g], x, study.numbers(figure.column), drawn,
                  std::string(kPalette[g % kPalette.size()]));
     if (plot.series.empty()) continue;
+    plot.log_y = spans_decades(plot.series);
     add_plot(
         page, plot, "study.csv",
-        capitalised(figure.label) + " over " + name +
+        capitalised(figure.label) + " over " + plot.x_label + (logarithmic ? ", logarithmic axis" : "") +
             (columns.seeds && !drawn ? "; lines are means over the seeds, points are single seeds." : "."));
   }
   page.end_multiples();

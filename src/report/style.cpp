@@ -59,6 +59,10 @@ tr.bad td:last-child { color: var(--bad); font-weight: 700; }
 tr.faint td { color: var(--quiet); }
 .groups section { max-width: 100%; overflow-x: auto; }
 .groups { display: flex; flex-wrap: wrap; gap: 0 3rem; align-items: flex-start; }
+.lead { display: grid; gap: 0 1.5rem; align-items: start;
+  grid-template-columns: repeat(auto-fit, minmax(min(24rem, 100%), 1fr)); }
+.lead > * { min-width: 0; }
+.lead figure { margin: 1rem 0 0; }
 .multiples { display: grid; gap: 0 1.5rem;
   grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); }
 .multiples figure { margin: .5rem 0; min-width: 0; }

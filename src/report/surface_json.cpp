@@ -5,6 +5,9 @@
 #include <cstdint>
 
 #include "core/markup.h"
+#include "core/object_colours.h"
+#include "core/rigid_fit.h"
+#include "core/rounded_range.h"
 #include "decimate.h"
 #include "json.h"
 #include "palpate/core/error.h"
@@ -18,10 +21,12 @@ constexpr double kLevels = 65535.0;
 
 /// Part as shown: its points of the run, and the faces between them.
 struct Shown {
-  std::string name;
+  std::string name, colour;
   bool body = false;
-  std::vector<int> points;
-  Faces faces;
+  std::size_t part = 0;            ///< Index among the parts of the run
+  std::vector<Pose> motions = {};  ///< Rigid motion of a free body, step by step
+  std::vector<int> points = {};
+  Faces faces = {};
   int first = 0;  ///< Index of its first point among all points shown
   int count() const { return static_cast<int>(points.size()); }
 };
@@ -29,7 +34,10 @@ struct Shown {
 int part_points(const store::RunPart& part) { return static_cast<int>(part.reference.cols()); }
 
 Shown shown_of(const store::RunPart& part, int first_point, int most) {
-  Shown out{part.name, part.tets.cols() > 0, {}, part.faces};
+  Shown out;
+  out.name = part.name;
+  out.body = part.tets.cols() > 0;
+  out.faces = part.faces;
   Points vertices = part.reference;
   std::vector<int> node_of_vertex;
   if (out.body) {
@@ -45,8 +53,19 @@ Shown shown_of(const store::RunPart& part, int first_point, int most) {
   return out;
 }
 
-std::vector<Shown> shown_parts(const store::RunReader& run, int most) {
+/// Returns the colour of a part without tetrahedra.
+/// @param before  number of such parts before it
+std::string_view rigid_colour(const std::string& name, std::size_t before,
+                              const std::vector<std::string>& tools) {
+  if (tools.empty()) return colours::tool(before);
+  const auto found = std::find(tools.begin(), tools.end(), name);
+  return found == tools.end() ? colours::kBone
+                              : colours::tool(static_cast<std::size_t>(found - tools.begin()));
+}
+
+std::vector<Shown> shown_parts(const store::RunReader& run, int most, const std::vector<std::string>& tools) {
   std::vector<Shown> out;
+  std::size_t rigid = 0;
   const double share = std::min(1.0, static_cast<double>(most) / std::max(1, run.point_count()));
   for (std::size_t i = 0; i < run.parts().size(); ++i) {
     const store::RunPart& part = run.parts()[i];
@@ -56,6 +75,8 @@ std::vector<Shown> shown_parts(const store::RunReader& run, int most) {
     const int first = out.empty() ? 0 : out.back().first + out.back().count();
     out.push_back(shown_of(part, run.first_point(static_cast<int>(i)), own));
     out.back().first = first;
+    out.back().part = i;
+    out.back().colour = out.back().body ? colours::kBody : rigid_colour(part.name, rigid++, tools);
   }
   return out;
 }
@@ -109,15 +130,57 @@ struct Box {
   }
 };
 
+/// Returns the volume around each node [m^3], a quarter of each of its tetrahedra: masses of a uniform body.
+VecX nodal_volumes(const store::RunPart& part) {
+  VecX out = VecX::Zero(part.reference.cols());
+  for (const auto tet : part.tets.colwise()) {
+    Mat3 edges;
+    for (int k = 0; k < 3; ++k) edges.col(k) = part.reference.col(tet[k + 1]) - part.reference.col(tet[0]);
+    for (const int node : tet) out[node] += std::abs(edges.determinant()) / 24.0;
+  }
+  return out;
+}
+
+/// Adds to each free body its rigid motion at a step.
+/// @param all  all points of the run
+void add_motions(const store::RunReader& run, const Points& all, std::vector<Shown>& parts,
+                 const std::vector<std::string>& free_bodies) {
+  for (Shown& part : parts) {
+    if (!part.body || std::find(free_bodies.begin(), free_bodies.end(), part.name) == free_bodies.end())
+      continue;
+    const store::RunPart& of_run = run.parts()[part.part];
+    const Points now = all.middleCols(run.first_point(static_cast<int>(part.part)), part_points(of_run));
+    part.motions.push_back(rigid_fit(of_run.reference, now, nodal_volumes(of_run)));
+  }
+}
+
+/// Returns the largest displacement of a body [m] at the newest step, without the rigid motion of free ones.
 double most_displacement(const Points& points, const Points& rest, const std::vector<Shown>& parts) {
   double most = 0.0;
-  for (const Shown& part : parts)
-    if (part.body)
-      most = std::max(most, (points - rest).middleCols(part.first, part.count()).colwise().norm().maxCoeff());
+  for (const Shown& part : parts) {
+    if (!part.body) continue;
+    const Pose motion = part.motions.empty() ? Pose{} : part.motions.back();
+    const Mat3 rotation = motion.rotation.toRotationMatrix();
+    for (int p = part.first; p < part.first + part.count(); ++p)
+      most = std::max(most, (points.col(p) - rotation * rest.col(p) - motion.translation).norm());
+  }
   return most;
 }
 
 Json list_of(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+Json motions_json(const std::vector<Pose>& motions) {
+  Json out = Json::array();
+  for (const Pose& motion : motions) {
+    Json one = Json::array();
+    const Mat3 rotation = motion.rotation.toRotationMatrix();
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) one.push_back(rotation(i, k));
+    for (const double x : motion.translation) one.push_back(x);
+    out.push_back(one);
+  }
+  return out;
+}
 
 Json parts_json(const std::vector<Shown>& parts, const Box& box, const Points& rest,
                 const std::vector<Points>& positions) {
@@ -129,10 +192,12 @@ Json parts_json(const std::vector<Shown>& parts, const Box& box, const Points& r
     for (const Points& now : positions) all += box.quantised(now, part);
     out.push_back({{"name", part.name},
                    {"kind", part.body ? "body" : "tool"},
+                   {"colour", part.colour},
                    {"vertices", part.count()},
                    {"faces", base64(faces)},
                    {"rest", base64(box.quantised(rest, part))},
                    {"positions", base64(all)}});
+    if (!part.motions.empty()) out.back()["motions"] = motions_json(part.motions);
   }
   return out;
 }
@@ -146,8 +211,9 @@ std::size_t first_from(const std::vector<double>& times, double time) {
 
 }  // namespace
 
-std::string surface_json(const store::RunReader& run, const ViewBudget& budget, double shown_at_s) {
-  const std::vector<Shown> parts = shown_parts(run, budget.vertices);
+std::string surface_json(const store::RunReader& run, const ViewBudget& budget,
+                         const ViewSettings& settings) {
+  std::vector<Shown> parts = shown_parts(run, budget.vertices, settings.tools);
   const long vertices = parts.empty() ? 0 : parts.back().first + parts.back().count();
   if (vertices == 0 || run.steps() == 0) return "";
   const std::vector<int> steps =
@@ -161,8 +227,10 @@ std::string surface_json(const store::RunReader& run, const ViewBudget& budget, 
   double most = 0.0;
   std::size_t first_shown = 0;
   for (const int step : steps) {
-    Points now = gathered(run.points(step), parts);
-    if (!now.allFinite()) break;
+    const Points all = run.points(step);
+    Points now = gathered(all, parts);
+    if (!all.allFinite()) break;
+    add_motions(run, all, parts, settings.free_bodies);
     box.add(now);
     if (const double own = most_displacement(now, rest, parts); own > most)
       most = own, first_shown = positions.size();
@@ -170,12 +238,18 @@ std::string surface_json(const store::RunReader& run, const ViewBudget& budget, 
     positions.push_back(std::move(now));
   }
   if (positions.empty()) return "";
-  if (std::isfinite(shown_at_s)) first_shown = first_from(times, shown_at_s);
+  if (std::isfinite(settings.shown_at_s)) first_shown = first_from(times, settings.shown_at_s);
+  const Json target = settings.target_m ? list_of(*settings.target_m) : Json(nullptr);
   return Json{{"times_s", times},
               {"low_m", list_of(box.low)},
               {"high_m", list_of(box.high)},
-              {"most_displacement_m", most},
+              {"most_displacement_m", rounded_range(most)},
               {"first_shown", first_shown},
+              {"ramp", colours::kRamp},
+              {"from", list_of(settings.from)},
+              {"up", list_of(settings.up)},
+              {"target_m", target},
+              {"zoom", settings.zoom},
               {"parts", parts_json(parts, box, rest, positions)}}
       .dump();
 }

@@ -82,8 +82,8 @@ TEST(StudySection, DrawsTheSweepAndTheSeeds) {
   const std::string html = read(written.page);
   EXPECT_EQ(well_formed_problem(html), "");
   for (const char* text :
-       {"<h1>Study</h1>", "Peak force on the hand [N] over body.0.youngs_modulus_pa", "CPU [s] over ",
-        "\"x_label\":\"body 0: youngs modulus [Pa]\"", "lines are means over the seeds",
+       {"<h1>Study</h1>", "Peak force on the hand [N] over body 0: Young", "CPU time [s] over ",
+        "\"x_label\":\"body 0: Young's modulus [Pa]\"", "lines are means over the seeds",
         "Spread over the seeds", "too many &lt;steps&gt;", "[study] # a &lt; b", "All figures of all tasks"})
     EXPECT_NE(html.find(text), std::string::npos) << text;
   EXPECT_EQ(count_of(html, "class=\"plot-data\""), 3u) << "force, steps, CPU";
@@ -115,6 +115,23 @@ TEST(StudySection, ASweepOfEqualRatiosHasALogarithmicAxis) {
   EXPECT_FALSE(log_axis({1, 21, 41, 61, 81, 101})) << "equal differences, though over two decades";
   EXPECT_FALSE(log_axis({-1, 0, 1, 2}));
   EXPECT_FALSE(log_axis({0, 0.5, 1}, true)) << "zero has no logarithm";
+}
+
+TEST(StudySection, FiguresOverDecadesHaveALogarithmicAxis) {
+  const auto log_y = [](const std::string& last) {
+    const TemporaryFolder folder;
+    folder.write("study.csv",
+                 "task,scene,integrator,key,status,reason,peak_force_n\n0,a,bdf2,1,ok,,0.02\n"
+                 "1,a,bdf2,10,ok,,0.3\n2,a,bdf2,100,ok,," +
+                     last + "\n");
+    const std::string html = read(write_run_report(folder.path()).page);
+    EXPECT_EQ(count_of(html, "\"log_y\":true") + count_of(html, "\"log_y\":false"), 1u);
+    return count_of(html, "\"log_y\":true") == 1u;
+  };
+  EXPECT_TRUE(log_y("4"));
+  EXPECT_FALSE(log_y("0.5")) << "a factor of 25";
+  EXPECT_FALSE(log_y("-4")) << "a negative number has no logarithm";
+  EXPECT_FALSE(log_y("0"));
 }
 
 TEST(StudySection, WithoutASweepThereIsNoChart) {

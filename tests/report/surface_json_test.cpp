@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/object_colours.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/generators.h"
 #include "palpate/store/run_file.h"
@@ -70,9 +71,12 @@ TEST(SurfaceJson, HoldsTheBoundaryAtItsPositionsWithinTheQuantisation) {
   EXPECT_EQ(view["parts"][1]["kind"], "tool");
   EXPECT_NEAR(view["most_displacement_m"], 4e-3, 1e-12);
   EXPECT_EQ(view["first_shown"], kSteps - 1);
-  EXPECT_EQ(json::parse(report::surface_json(run, {}, 0.011))["first_shown"], 2) << "the state that follows";
-  EXPECT_EQ(json::parse(report::surface_json(run, {}, 0.01 * (1.0 + 1e-12)))["first_shown"], 1);
-  EXPECT_EQ(json::parse(report::surface_json(run, {}, 9.0))["first_shown"], kSteps - 1) << "the last";
+  EXPECT_EQ(json::parse(report::surface_json(run, {}, {.shown_at_s = 0.011}))["first_shown"], 2)
+      << "the state that follows";
+  EXPECT_EQ(json::parse(report::surface_json(run, {}, {.shown_at_s = 0.01 * (1.0 + 1e-12)}))["first_shown"],
+            1);
+  EXPECT_EQ(json::parse(report::surface_json(run, {}, {.shown_at_s = 9.0}))["first_shown"], kSteps - 1)
+      << "the last";
   const auto vertices = static_cast<std::size_t>(outer.surface.vertices.cols());
   ASSERT_EQ(body["vertices"], vertices) << "nothing inside the ball";
   const std::vector<int> positions = numbers_of(body["positions"]), faces = numbers_of(body["faces"]);
@@ -87,6 +91,36 @@ TEST(SurfaceJson, HoldsTheBoundaryAtItsPositionsWithinTheQuantisation) {
             outer.surface.vertices(static_cast<int>(k), static_cast<int>(v)) + (k == 0 ? 1e-3 * s : 0.0);
         ASSERT_NEAR(at, exact, 0.51 * step) << "step " << s << ", vertex " << v << ", axis " << k;
       }
+}
+
+TEST(SurfaceJson, AFreeBodyThatOnlyMovesHasNoDisplacement) {
+  const TemporaryFolder folder;
+  const store::RunReader run(moving_ball(folder, mesh::ball(0.05, 0.02)).string());
+  const json view = json::parse(report::surface_json(run, {}, {.free_bodies = {"ball"}}));
+  EXPECT_NEAR(view["most_displacement_m"], 0.0, 1e-12);
+  const json& motions = view["parts"][0]["motions"];
+  ASSERT_EQ(motions.size(), kSteps);
+  for (int s = 0; s < kSteps; ++s)
+    for (int i = 0; i < 12; ++i) {
+      const double expected = i == 0 || i == 4 || i == 8 ? 1.0 : i == 9 ? 1e-3 * s : 0.0;
+      EXPECT_NEAR(motions[s][i], expected, 1e-10) << "step " << s << ", entry " << i;
+    }
+  EXPECT_FALSE(view["parts"][1].contains("motions"));
+}
+
+TEST(SurfaceJson, HasTheColoursAndTheViewOfThePictures) {
+  const TemporaryFolder folder;
+  const store::RunReader run(moving_ball(folder, mesh::ball(0.05, 0.03)).string());
+  const json view = json::parse(report::surface_json(
+      run, {}, {.tools = {"other", "tool"}, .from = {1, 0, 0}, .target_m = {{0, 0, 1}}, .zoom = 2.0}));
+  EXPECT_EQ(view["ramp"].size(), colours::kRamp.size());
+  EXPECT_EQ(view["parts"][0]["colour"], colours::kBody);
+  EXPECT_EQ(view["parts"][1]["colour"], colours::kTools[1]);
+  EXPECT_EQ(view["from"], json({1.0, 0.0, 0.0}));
+  EXPECT_EQ(view["target_m"], json({0.0, 0.0, 1.0}));
+  EXPECT_EQ(view["zoom"], 2.0);
+  const json bone = json::parse(report::surface_json(run, {}, {.tools = {"other"}}));
+  EXPECT_EQ(bone["parts"][1]["colour"], colours::kBone);
 }
 
 TEST(SurfaceJson, KeepsItsBudgetInSpaceAndTime) {

@@ -1,4 +1,4 @@
-/* made by src/report/page/build.mjs, sources sha256 d8308a04c83abf6b743a1eff3876406e2663dedcbc7e343bdd59dd5ead2e6c02
+/* made by src/report/page/build.mjs, sources sha256 565a7bc169f0d5eb04d8a9057dd858960edf5331c788b73b01e5e783e9b87d8b
 
 This part of the page holds three 0.170.0
 

@@ -26,7 +26,8 @@ export function fullRange(data, name) {
     return [low * 10 ** -room, high * 10 ** room];
   }
   const room = (high - low || Math.abs(high) || 1) * ROOM[name];
-  return name === "x" ? [low, high + (high > low ? 0 : room)] : [low - room, high + room];
+  const names = data.spans.length > 0 ? 2 : 1;  // of the phases, above the curves
+  return name === "x" ? [low, high + (high > low ? 0 : room)] : [low - room, high + names * room];
 }
 
 /// The whole range of the data until the reader zooms: a series that is switched off moves no other.

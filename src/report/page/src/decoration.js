@@ -39,6 +39,25 @@ export function drawLevels(u, data) {
   });
 }
 
+/// Bands for the phases of a motion, every other one tinted, with their names along the upper edge.
+export function drawSpans(u, data) {
+  clipped(u, (ctx, box) => {
+    const across = (value) => u.valToPos(value, "x", true);
+    ctx.font = `${11 * px}px system-ui, sans-serif`;
+    ctx.textAlign = "center";
+    data.spans.forEach((span, i) => {
+      const left = Math.max(box.left, across(span.from));
+      const right = Math.min(box.left + box.width, across(span.to));
+      if (right <= left) return;
+      ctx.fillStyle = pageColour("tint");
+      if (i % 2 === 1) ctx.fillRect(left, box.top, right - left, box.height);
+      ctx.fillStyle = pageColour("quiet");
+      if (ctx.measureText(span.label).width < right - left)
+        ctx.fillText(span.label, (left + right) / 2, box.top + 13 * px);
+    });
+  });
+}
+
 /// Text on a halo of the page's colour.  A name that would lie over another is left out.
 function writer(ctx) {
   const taken = [];

@@ -1,8 +1,9 @@
 // Positions over time, unpacked from the page, and the colours of displacement.
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, MeshLambertMaterial } from "three";
+import {
+  BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, MeshLambertMaterial,
+} from "three";
 
 const LEVELS = 65535;
-const TOOL_COLOUR = 0x8a94a0;
 
 function bytesOf(base64) {
   const text = atob(base64), bytes = new Uint8Array(text.length);
@@ -16,15 +17,36 @@ function numbersOf(base64) {
   return Uint16Array.from({ length: bytes.length / 2 }, (_, i) => view.getUint16(2 * i, true));
 }
 
-/// Viridis (Smith and van der Walt 2015) by five of its colours, as the pictures have it: 0 to 1.
-export const RAMP = ["#440154", "#3b528b", "#21918c", "#5ec962", "#fde725"];
-const COLOURS = RAMP.map((name) => new Color(name));
-function rampAt(share, out) {
-  const at = Math.min(0.9999, Math.max(0, share)) * (COLOURS.length - 1), i = Math.floor(at);
-  return out.lerpColors(COLOURS[i], COLOURS[i + 1], at - i);
+/// The colours of the page's data, evenly spaced: 0 to 1.
+function makeRamp(names) {
+  const colours = names.map((name) => new Color(name));
+  return (share, out) => {
+    const at = Math.min(0.9999, Math.max(0, share)) * (colours.length - 1), i = Math.floor(at);
+    return out.lerpColors(colours[i], colours[i + 1], at - i);
+  };
 }
 
-function makePart(part, data) {
+/// How far a point is from its place at rest; of a free body after its rigid motion.
+function displacement(positions, rest, i, motion) {
+  let sum = 0;
+  for (let k = 0; k < 3; ++k) {
+    const placed = motion
+      ? motion[3 * k] * rest[i] + motion[3 * k + 1] * rest[i + 1] + motion[3 * k + 2] * rest[i + 2] +
+        motion[9 + k]
+      : rest[i + k];
+    sum += (positions[i + k] - placed) ** 2;
+  }
+  return Math.sqrt(sum);
+}
+
+/// Tools are translucent: the dent lies under them.
+function materialOf(part, coloured) {
+  if (coloured) return new MeshLambertMaterial({ side: DoubleSide, vertexColors: true, color: 0xffffff });
+  return new MeshLambertMaterial({ side: FrontSide, color: part.colour, transparent: true, opacity: 0.4,
+    depthWrite: false });
+}
+
+function makePart(part, data, rampAt) {
   const size = data.high_m.map((high, k) => high - data.low_m[k]);
   const unpack = (quantised, from, target) => {
     for (let i = 0; i < target.length; ++i)
@@ -38,13 +60,12 @@ function makePart(part, data) {
   geometry.setAttribute("position", new BufferAttribute(positions, 3));
   const coloured = part.kind === "body";
   if (coloured) geometry.setAttribute("color", new BufferAttribute(colours, 3));
-  const material = new MeshLambertMaterial({ side: DoubleSide, vertexColors: coloured,
-    color: coloured ? 0xffffff : TOOL_COLOUR });
+  const material = materialOf(part, coloured);
   const colour = new Color();
   const show = (step) => {
     unpack(quantised, step * count, positions);
     for (let i = 0; coloured && i < count; i += 3) {
-      const moved = Math.hypot(...[0, 1, 2].map((k) => positions[i + k] - rest[i + k]));
+      const moved = displacement(positions, rest, i, part.motions && part.motions[step]);
       rampAt(data.most_displacement_m > 0 ? moved / data.most_displacement_m : 0, colour).toArray(colours, i);
     }
     for (const name of Object.keys(geometry.attributes)) geometry.attributes[name].needsUpdate = true;
@@ -54,7 +75,8 @@ function makePart(part, data) {
 }
 
 export function makeMotion(data) {
-  const parts = data.parts.map((part) => makePart(part, data));
+  const rampAt = makeRamp(data.ramp);
+  const parts = data.parts.map((part) => makePart(part, data, rampAt));
   const centre = data.low_m.map((low, k) => (low + data.high_m[k]) / 2);
   for (const { geometry } of parts) geometry.boundingSphere = null;
   return {

@@ -2,7 +2,7 @@
 import uPlot from "uplot";
 import css from "uplot/dist/uPlot.min.css";
 import { axisOf, scaleOf } from "./axes.js";
-import { drawFloor, drawLevels, drawMarks } from "./decoration.js";
+import { drawFloor, drawLevels, drawMarks, drawSpans } from "./decoration.js";
 import { makeLegend } from "./legend.js";
 import { attachReading } from "./reading.js";
 import { colourOf, inkOf } from "./colours.js";
@@ -64,8 +64,8 @@ function drawChart(figure) {
     scales: { x: scaleOf(data, "x"), y: scaleOf(data, "y") },
     axes: [axisOf(data, "x", inkOf), axisOf(data, "y", inkOf)],
     series: [{}, ...data.series.map((one) => seriesOf(one))],
-    hooks: { drawClear: [(u) => drawFloor(u, data)], drawAxes: [(u) => drawLevels(u, data)],
-      draw: [(u) => drawMarks(u, data)] },
+    hooks: { drawClear: [(u) => drawFloor(u, data), (u) => drawSpans(u, data)],
+      drawAxes: [(u) => drawLevels(u, data)], draw: [(u) => drawMarks(u, data)] },
   };
   const aligned = uPlot.join(data.series.map((one) => {
     const order = one.x.map((_, i) => i).sort((a, b) => one.x[a] - one.x[b]);

@@ -3,12 +3,11 @@ import {
   AmbientLight, DirectionalLight, Mesh, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { makeMotion, RAMP } from "./motion.js";
+import { makeMotion } from "./motion.js";
 import { shortNumber } from "./numbers.js";
 import { makePlayer } from "./player.js";
 
 const HEIGHT_OF_WIDTH = 0.62;
-const FROM = new Vector3(0.75, -1.25, 0.6).normalize();
 
 function hasWebGl() {
   const canvas = document.createElement("canvas");
@@ -43,12 +42,13 @@ function turnByKeys(canvas, camera, controls, draw) {
 }
 
 /// What the colours mean, under the view.
-function colourScale(motion) {
+function colourScale(data) {
   const scale = document.createElement("div"), bar = document.createElement("i");
   scale.className = "scale";
-  bar.style.background = `linear-gradient(to right, ${RAMP.join(", ")})`;
-  const most_mm = 1000 * motion.most_displacement_m;
-  scale.append("displacement [mm]: 0", bar, shortNumber(most_mm));
+  bar.style.background = `linear-gradient(to right, ${data.ramp.join(", ")})`;
+  const most_mm = 1000 * data.most_displacement_m;
+  const free = data.parts.some((part) => part.motions) ? " without rigid motion" : "";
+  scale.append(`displacement${free} [mm]: 0`, bar, shortNumber(most_mm));
   return scale;
 }
 
@@ -62,14 +62,15 @@ function makeView(holder) {
     "plus and minus zoom, space plays");
   holder.querySelector(".stage").append(canvas);
   const scene = new Scene(), camera = new PerspectiveCamera(32, 1 / HEIGHT_OF_WIDTH, 1e-3, 1e3);
-  camera.up.set(0, 0, 1);
+  camera.up.set(...data.up).normalize();
+  camera.zoom = data.zoom;
   lights(scene, camera);
   const motion = makeMotion(data);
   for (const { geometry, material } of motion.parts) scene.add(new Mesh(geometry, material));
 
   const controls = new OrbitControls(camera, canvas), radius = motion.radius_m;
-  controls.target.set(...motion.centre_m);
-  camera.position.copy(controls.target).addScaledVector(FROM, 3.1 * radius);
+  controls.target.set(...(data.target_m || motion.centre_m));
+  camera.position.copy(controls.target).addScaledVector(new Vector3(...data.from).normalize(), 3.1 * radius);
   camera.near = 0.01 * radius;
   camera.far = 100 * radius;
   controls.update();
@@ -93,7 +94,7 @@ function makeView(holder) {
   controls.addEventListener("change", draw);
   turnByKeys(canvas, camera, controls, draw);
   makePlayer(holder, canvas, motion, draw);
-  holder.querySelector(".player").after(colourScale(motion));
+  holder.querySelector(".player").after(colourScale(data));
   holder.hidden = false;
   new ResizeObserver(resize).observe(holder);
   resize();
