@@ -98,7 +98,6 @@ Wrench WrenchLimiter::limit(double t, const Wrench& requested, bool valid) {
   const bool good_time = std::isfinite(t) && (!started_ || t > last_time_);
   const bool good_wrench = requested.force.allFinite() && requested.moment.allFinite();
   if (!good_time || (valid && !good_wrench)) ++rejected_;
-  without_pose_ += !valid;
   if (!good_time) {
     stalled_ += last_dt_;
     return last_ = fall(last_time_ - last_valid_ + stalled_);
@@ -107,7 +106,9 @@ Wrench WrenchLimiter::limit(double t, const Wrench& requested, bool valid) {
   last_time_ = t;
   stalled_ = 0.0;
   started_ = true;
-  return last_ = valid && good_wrench ? follow(t, last_dt_, requested) : fall(t - last_valid_);
+  last_ = valid && good_wrench ? follow(t, last_dt_, requested) : fall(t - last_valid_);
+  without_pose_ += !valid && !live_;
+  return last_;
 }
 
 Wrench WrenchLimiter::follow(double t, double dt, const Wrench& requested) {

@@ -32,8 +32,7 @@ void add_gaps(const loop::World& world, const loop::RunResult& result, Remarks& 
     const auto [without, ticks] = ticks_without_pose(result, hand);
     if (without == 0) continue;
     out.push_back(
-        fmt::format("device of {}: no pose for {} of {} ticks; the force is zero from 20 ms after the last "
-                    "pose on",
+        fmt::format("device of {}: no force in {} of {} ticks, because its last pose was older than 20 ms",
                     hand_label(world, hand), without, ticks));
   }
 }
@@ -125,10 +124,12 @@ void check_poses_arrived(const loop::World& world, const loop::RunResult& result
   for (std::size_t hand = 0; hand <= result.more_hands.size(); ++hand) {
     const auto [without, ticks] = ticks_without_pose(result, hand);
     if (2 * without > ticks)
-      missing.add(fmt::format("force on {}", hand_label(world, hand)),
-                  fmt::format("its device had no pose for {} of {} ticks: whoever moves it stopped sending; "
-                              "keep it sending poses, or increase device.time_out_s",
-                              without, ticks));
+      missing.add(
+          fmt::format("force on {}", hand_label(world, hand)),
+          fmt::format(
+              "its device had sent no pose for 20 ms or more in {} of {} ticks: keep it sending until "
+              "the end, or shorten the run",
+              without, ticks));
   }
 }
 

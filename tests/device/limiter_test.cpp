@@ -223,3 +223,18 @@ TEST(WrenchLimiter, bad_settings_are_refused) {
   EXPECT_NE(message(3.3, 0.2, 0.0, 490.0).find("max_force_slew_n_s = 490 is too small"), std::string::npos);
   EXPECT_EQ(message(3.3, 0.2, 0.0, 496.0), "");
 }
+
+TEST(WrenchLimiter, counts_ticks_whose_last_pose_is_older_than_the_fall) {
+  WrenchLimiter limiter(3.3, 0.2, 0.0);
+  const auto ticks = [&](int first, int count, bool valid) {
+    for (int i = first; i < first + count; ++i) limiter.limit(1e-3 * i, {Vec3::Zero(), Vec3(0, 0, 1)}, valid);
+  };
+  ticks(0, 10, false);
+  EXPECT_EQ(limiter.ticks_without_pose(), 10) << "before the first pose";
+  ticks(10, 10, true);
+  ticks(20, 15, false);
+  ticks(35, 5, true);
+  EXPECT_EQ(limiter.ticks_without_pose(), 10) << "a gap of 15 ms leaves a force";
+  ticks(40, 50, false);
+  EXPECT_NEAR(static_cast<double>(limiter.ticks_without_pose()), 10 + 50 - 19, 1) << "no force from 20 ms on";
+}

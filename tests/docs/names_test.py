@@ -17,7 +17,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 from pages import DOCS, GENERATED, TREE, fences, hand_written, pages, prose, spans, table_rows  # noqa: E402
 
-LAUNCHER = {"test": {"--slow", "--part", "--help"}, "build": set(), "package": set()}
+LAUNCHER = {"test": {"--slow", "--part", "--help"}, "build": set(), "package": set(), "wheel": set()}
 LAUNCHER_OPTIONS = {"--no-install", "--assume-packages", "--debug", "--asan", "--strict", "--minimal"}
 # Options of other programs that the pages mention.
 FOREIGN = {"--install", "--prefix"}
