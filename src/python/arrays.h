@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "palpate/core/types.h"
+
 /// Read-only NumPy arrays that are views of C++ memory: nothing is copied.
 namespace palpate::python {
 
@@ -32,6 +34,15 @@ pybind11::array rows(const T* data, pybind11::ssize_t n, pybind11::ssize_t width
                      const pybind11::handle& owner) {
   constexpr pybind11::ssize_t size = sizeof(T);
   return view(data, {n, width}, {width * size, size}, owner);
+}
+
+/// Makes an array of three numbers, a copy.
+inline pybind11::array copied(const Vec3& v) { return pybind11::array_t<double>(3, v.data()); }
+
+/// Makes an array of a unit quaternion: w, x, y, z.
+inline pybind11::array copied(const Quat& q) {
+  const double numbers[] = {q.w(), q.x(), q.y(), q.z()};
+  return pybind11::array_t<double>(4, numbers);
 }
 
 /// Keeps a value alive as long as arrays refer to it; get() returns it at its final address.

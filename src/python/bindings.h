@@ -6,6 +6,9 @@ namespace palpate::python {
 
 void bind_scene(pybind11::module_& module);
 void bind_body(pybind11::module_& module);
+void bind_body_state(pybind11::module_& module);
+void bind_bone(pybind11::module_& module);
+void bind_handle_pose(pybind11::module_& module);
 void bind_hand(pybind11::module_& module);
 void bind_contact(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);

@@ -16,6 +16,9 @@ PYBIND11_MODULE(_palpate, module) {
       "An integrator failed; the state is the last valid one.";
   python::bind_scene(module);
   python::bind_body(module);
+  python::bind_body_state(module);
+  python::bind_bone(module);
+  python::bind_handle_pose(module);
   python::bind_hand(module);
   python::bind_contact(module);
   python::bind_simulation(module);

@@ -27,13 +27,16 @@ void TickLists::tick_of(std::size_t hand, const loop::TickRecord& tick) {
   list->push_back(tick);
 }
 
-Simulation::Simulation(const scene::Description& description, double duration_s)
-    : world_(loop::assemble(description)),
+Simulation::Simulation(const scene::Description& description, SimulationOptions requested)
+    : world_(loop::assemble(description, std::move(requested.hands))),
       ticks_(std::make_unique<TickLists>(scene::hands_of(world_->description).size())) {
-  if (!(duration_s >= 0.0)) fail("duration_s = {} must be positive, or 0 for the scene's", duration_s);
+  if (!(requested.duration_s >= 0.0))
+    fail("duration_s = {} must be positive, or 0 for the scene's", requested.duration_s);
+  if (requested.external_forces) external_forces_ = add_external_forces(*world_);
   loop::RunOptions options;
-  options.duration_s = duration_s;
+  options.duration_s = requested.duration_s;
   options.observers = {ticks_.get()};
+  if (requested.energy) options.observers.push_back(&balance_.emplace());
   options.stop = &stop_;
   run_ = std::make_unique<loop::SteppedRun>(*world_, options);
 }
@@ -44,8 +47,27 @@ Simulation::Lease::Lease(Simulation& simulation) : busy_(simulation.busy_) {
 
 bool Simulation::finished() const { return time_ >= duration() * (1.0 - 1e-12); }
 
+const loop::EnergyBalance& Simulation::energy() const {
+  if (!balance_) fail("energies are computed only on request: Simulation(scene, energy=True)");
+  return balance_->balance();
+}
+
+ExternalForces& Simulation::external_forces(std::size_t body) {
+  if (external_forces_.empty())
+    fail("external forces are added only on request: Simulation(scene, external_forces=True)");
+  return *external_forces_.at(body);
+}
+
+void Simulation::changed(dynamics::ReinitReason reason) {
+  if (world_->stepper) world_->stepper->reinit(reason);
+}
+
 bool Simulation::next() {
-  if (run_->next()) {
+  if (broken_) fail("a step of this simulation ended by an exception; create a new simulation");
+  broken_ = true;  // stays true if next() throws
+  const bool advanced = run_->next();
+  broken_ = false;
+  if (advanced) {
     time_ = result().time;
     return true;
   }

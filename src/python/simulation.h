@@ -1,10 +1,13 @@
 #pragma once
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "external_forces.h"
+#include "palpate/device/device.h"
 #include "palpate/loop/stepped_run.h"
 
 namespace palpate::python {
@@ -29,11 +32,30 @@ class TickLists : public loop::Observer {
   std::vector<std::shared_ptr<std::vector<loop::TickRecord>>> lists_;
 };
 
+/// Energy balance at the end of the last period.
+class LastBalance : public loop::Observer {
+ public:
+  bool wants_energy() const override { return true; }
+  void energy(const loop::EnergyBalance& balance) override { balance_ = balance; }
+  const loop::EnergyBalance& balance() const { return balance_; }
+
+ private:
+  loop::EnergyBalance balance_;
+};
+
+/// Optional parts of a simulation, for which others do not pay.
+struct SimulationOptions {
+  double duration_s = 0.0;                             ///< Simulated time [s]; 0: the scene's.
+  std::vector<std::unique_ptr<device::Device>> hands;  ///< One per hand; null or missing: the scene's.
+  bool external_forces = false;                        ///< Bodies take forces of the caller.
+  bool energy = false;                                 ///< Computes the energy balance of each period.
+};
+
 /// Simulation of a scene, advanced period by period in virtual time.
 class Simulation {
  public:
-  /// Assembles the scene.  @param duration_s  simulated time [s]; 0: the scene's
-  Simulation(const scene::Description& description, double duration_s);
+  /// Assembles the scene.
+  Simulation(const scene::Description& description, SimulationOptions options);
 
   /// Advances by one period; returns false at the end.
   /// @throws StepFailure where the integrator has failed, now or before; Error where the run was stopped, or
@@ -56,6 +78,12 @@ class Simulation {
   double duration() const { return run_->duration(); }
   loop::World& world() { return *world_; }
   const TickLists& ticks() const { return *ticks_; }
+  /// Returns the energy balance at the end of the last period.  @throws Error if it was not requested
+  const loop::EnergyBalance& energy() const;
+  /// Returns the external forces of a body, by its index.  @throws Error if they were not requested
+  ExternalForces& external_forces(std::size_t body);
+  /// Tells the integrator that positions, velocities or forces have been changed. @pre leased
+  void changed(dynamics::ReinitReason reason);
 
   /// Exclusive access to the World for one thread.  @throws Error where another thread has it
   class Lease {
@@ -74,6 +102,9 @@ class Simulation {
 
   std::unique_ptr<loop::World> world_;
   std::unique_ptr<TickLists> ticks_;
+  std::optional<LastBalance> balance_;
+  std::vector<std::shared_ptr<ExternalForces>> external_forces_;
+  bool broken_ = false;  ///< A step ended by an exception.
   std::unique_ptr<loop::SteppedRun> run_;
   std::atomic<bool> stop_{false}, busy_{false};
   std::atomic<double> time_{0.0};

@@ -84,6 +84,35 @@ class Example(unittest.TestCase):
             self.assertAlmostEqual(depth, theory, delta=3e-3 * theory)  # the loaded face widens by nu p / E
 
 
+    def test_result_of_hand_from_python(self):
+        lines = run((TREE / "examples/hand_from_python.py").read_text(), TREE).splitlines()
+        self.assertEqual(len(lines), 6, lines)
+        ticks, force, lower = re.fullmatch(
+            r"(\d+) ticks; force ([\d.]+) N, target 0.3 N; handle ([\d.]+) mm lower", lines[-1]).groups()
+        self.assertEqual(ticks, "1500")
+        self.assertAlmostEqual(float(force), 0.3, delta=0.003)
+        self.assertGreater(float(lower), 3.0)
+
+    def test_result_of_forces_from_python(self):
+        text = run((TREE / "examples/forces_from_python.py").read_text(), TREE)
+        longer, theory = map(float, re.fullmatch(
+            r"longer by ([\d.e-]+) m, by theory F L / \(E A\) = ([\d.e-]+) m\n", text).groups())
+        self.assertAlmostEqual(theory, 0.5 * 0.08 / (1e5 * 4e-4), delta=1e-9)
+        self.assertAlmostEqual(longer, theory, delta=0.02 * theory)
+
+    def test_result_of_states_from_python(self):
+        text = run((TREE / "examples/states_from_python.py").read_text(), TREE)
+        number = r"([\d.e-]+)"
+        moved, by_theory, energy, energy_by_theory, back = map(float, re.fullmatch(
+            rf"moved by {number} m, by theory {number} m; kinetic energy {number} J, by theory {number} J\n"
+            rf"put back and stopped: moved by {number} m in 0.1 s\n", text).groups())
+        self.assertEqual(by_theory, 0.2)
+        self.assertAlmostEqual(moved, by_theory, delta=2e-6)
+        self.assertAlmostEqual(energy, energy_by_theory, delta=2e-6)
+        self.assertGreater(energy, 0.1)
+        self.assertLess(back, 1e-9)
+
+
 class Notebook(unittest.TestCase):
     @unittest.skipIf(matplotlib is None, "Matplotlib is missing (Debian package python3-matplotlib)")
     def test_it_runs(self):

@@ -1,23 +1,41 @@
-"""palpate from Python: load a scene or build one, step it, look at it, run it
-with its files, compare integrators.
+"""Haptic rendering of soft bodies from Python: SI units, arrays with one row per point.
+
+Step a scene, and read its state as NumPy arrays without copies:
 
     import palpate
     simulation = palpate.Simulation(palpate.load("scenes/press-ball.toml"))
     simulation.advance(0.2)
     print(simulation.force, simulation.body("ball").positions)
+
+Move the hand by a function, which is called once per tick:
+
+    def hand(time, force, torque):
+        return 0.0, 0.0, 0.082 - 0.05 * time
+    simulation = palpate.Simulation(palpate.load("scenes/press-ball.toml"), hands=hand)
+
+Run a scene with the files of `palpate run`, in virtual or in real time:
+
     run = palpate.run("press-ball", folder="out", picture=True)
 
-SI units throughout; positions are arrays with one row per point.  docs/python.md is the page to begin with.
-`palpate.plot` has charts (Matplotlib), and is imported only where it is asked for.
+Scenes        load, Scene, make_model (models of surfaces)
+Simulations   Simulation, and its Body, Bone, Hand, Contact; HandlePose for a function that moves a hand
+Runs          run, resume, movie; Run
+Studies       compare, validate; Comparison, Measurement
+Errors        Error (invalid input), IntegratorError (a step failed)
+
+palpate.plot has charts (Matplotlib) and palpate.device a peer for [device] type = "udp"; import them
+separately.  docs/python.md has examples.
 """
 from ._blas import settings_of_the_program
 
 with settings_of_the_program():
-    from ._palpate import (Body, Contact, Error, Hand, IntegratorError, Measurement, Scene, Simulation, load,
-                           validate)
+    from ._palpate import (Body, Bone, Contact, Error, Hand, HandlePose, IntegratorError, Measurement, Scene,
+                           Simulation, load, validate)
 
 from ._compare import Comparison, compare
+from ._model import make_model
 from ._run import Run, movie, resume, run
 
-__all__ = ["Body", "Comparison", "Contact", "Error", "Hand", "IntegratorError", "Measurement", "Run", "Scene",
-           "Simulation", "compare", "load", "movie", "resume", "run", "validate"]
+__all__ = ["Body", "Bone", "Comparison", "Contact", "Error", "Hand", "HandlePose", "IntegratorError",
+           "Measurement", "Run", "Scene", "Simulation", "compare", "load", "make_model", "movie", "resume",
+           "run", "validate"]

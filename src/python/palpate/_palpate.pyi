@@ -1,6 +1,7 @@
 """Scenes, simulations and studies of palpate; SI units, arrays with one row per point."""
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -83,6 +84,57 @@ class Body:
     @property
     def surface_positions(self) -> _Floats:
         """Present positions of that surface's vertices, (v, 3) [m]; computed on access."""
+    @property
+    def external_forces(self) -> _Floats:
+        """Forces set by apply_forces, (n, 3) [N]: a view."""
+    def apply_forces(self, forces: npt.ArrayLike) -> None:
+        """Sets external forces on the nodes, (n, 3) [N], that act until the next call."""
+    def set_state(self, positions: npt.ArrayLike | None = None,
+                  velocities: npt.ArrayLike | None = None) -> None:
+        """Sets positions [m] and velocities [m/s] of the nodes, (n, 3) each; None leaves them."""
+
+class Bone:
+    """One rigid bone of a simulation; values at present, computed on access."""
+    @property
+    def name(self) -> str: ...
+    @property
+    def mass(self) -> float:
+        """Mass of a free bone [kg]; 0 for a fixed or scripted one."""
+    @property
+    def position(self) -> _Floats:
+        """Position of the origin of its axes, (3,) [m]."""
+    @property
+    def rotation(self) -> _Floats:
+        """Orientation: unit quaternion w, x, y, z, (4,)."""
+    @property
+    def velocity(self) -> _Floats:
+        """Velocity of the origin, (3,) [m/s]."""
+    @property
+    def angular_velocity(self) -> _Floats:
+        """Angular velocity, (3,) [rad/s]."""
+    @property
+    def force(self) -> _Floats:
+        """Force of the tissue on the bone, (3,) [N]."""
+    @property
+    def torque(self) -> _Floats:
+        """Torque of the tissue about the origin, (3,) [N m]."""
+
+class HandlePose:
+    """Pose of a handle, as a function given to `Simulation(hands=...)` may return it."""
+    def __init__(self, position: npt.ArrayLike, rotation: npt.ArrayLike | None = None,
+                 velocity: npt.ArrayLike | None = None, angular_velocity: npt.ArrayLike | None = None,
+                 switches: int = 0, valid: bool = True) -> None:
+        """position [m]; rotation: unit quaternion w, x, y, z; velocities [m/s, rad/s]: None computes them."""
+    @property
+    def position(self) -> _Floats: ...
+    @property
+    def rotation(self) -> _Floats: ...
+    @property
+    def switches(self) -> int: ...
+    @property
+    def valid(self) -> bool: ...
+
+_Move = Callable[[float, _Floats, _Floats], npt.ArrayLike | HandlePose]
 
 class Hand:
     """Motion of one hand and force on it so far, one row per tick."""
@@ -141,7 +193,15 @@ class Contact:
 
 class Simulation:
     """A scene that is simulated in virtual time, period by period."""
-    def __init__(self, scene: Scene, duration_s: float = 0.0) -> None: ...
+    def __init__(self, scene: Scene, duration_s: float = 0.0,
+                 hands: _Move | Mapping[str, _Move] | None = None, external_forces: bool = False, energy: bool = False) -> None:
+        """Assembles a scene.
+
+        duration_s: 0 for the scene's.  hands: a function that moves the first hand, or a dict of hand names
+        and functions; it is called once per tick as function(time, force, torque) and returns the position of
+        the handle [m], or a HandlePose.  external_forces: whether Body.apply_forces can be used.  energy:
+        whether the energy balance is computed in every period.
+        """
     def step(self) -> bool:
         """Advances by one period of the scene's loop.  Returns False at the end, without advancing."""
     def advance(self, seconds: float) -> None:
@@ -160,8 +220,18 @@ class Simulation:
     def bodies(self) -> list[Body]: ...
     def body(self, name: str) -> Body:
         """The body of that name."""
+    @property
+    def bones(self) -> list[Bone]:
+        """All bones, in the order of the scene."""
+    def bone(self, name: str) -> Bone:
+        """The bone of that name."""
+    @property
+    def energy(self) -> dict[str, float]:
+        """Energies and works at the end of the last period [J], by the names of energy.csv."""
+    def picture(self, file: str | os.PathLike[str], shade: str = "displacement") -> Path:
+        """Draws the present state to a PNG file and returns its path; shade: "displacement" or "stress"."""
     def hand(self, name: str = "tool") -> Hand:
-        """What the hand with that tool did and felt."""
+        """Motion of a hand and force on it, by name."""
     @property
     def force(self) -> _Floats:
         """Force on the first hand at the last tick, (3,) [N]."""
