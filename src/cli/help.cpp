@@ -12,6 +12,7 @@
 #include "cli/program.h"
 #include "commands.h"
 #include "help_pages.h"
+#include "help_topic.h"
 #include "palpate/core/error.h"
 #include "plain_text.h"
 #include "report/table.h"
@@ -44,11 +45,6 @@ void print_topics() {
       report::format_table({"topic", "content"}, rows));
 }
 
-bool is_help_topic(const std::string& name) {
-  return std::any_of(help_pages().begin(), help_pages().end(),
-                     [&](const HelpPage& page) { return page.topic == name; });
-}
-
 int help(const HelpArguments& arguments) {
   if (arguments.topic.empty()) {
     print_topics();
@@ -64,6 +60,9 @@ int help(const HelpArguments& arguments) {
   }
   std::vector<std::string> candidates = known;
   candidates.insert(candidates.end(), arguments.commands.begin(), arguments.commands.end());
+  const std::vector<std::string> begin = beginning_with(arguments.topic, candidates);
+  if (begin.size() > 1)
+    fail("\"{}\" is the beginning of {}; write more of it", arguments.topic, fmt::join(begin, ", "));
   const std::string near = nearest_name(arguments.topic, candidates);
   fail("there is no help topic \"{}\"{}; topics: {}", arguments.topic,
        near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near), fmt::join(known, ", "));
@@ -84,13 +83,16 @@ void add_help(CLI::App& app, Invocation& invocation) {
   palpate help keys)");
   command->callback([arguments, &app, &invocation] {
     for (const CLI::App* one : app.get_subcommands({})) arguments->commands.push_back(one->get_name());
+    std::vector<std::string> topics;
+    for (const HelpPage& page : help_pages()) topics.emplace_back(page.topic);
+    const bool is_topic = complete_topic(topics, arguments->commands, arguments->topic);
     const bool is_command =
-        std::count(arguments->commands.begin(), arguments->commands.end(), arguments->topic);
+        !is_topic && std::count(arguments->commands.begin(), arguments->commands.end(), arguments->topic) > 0;
     if (const OtherProgram* other = find_other_program(arguments->topic)) {
       invocation.action = [other, topic = arguments->topic] { return start(*other, {topic, "--help"}); };
       return;
     }
-    if (is_command && !is_help_topic(arguments->topic)) {
+    if (is_command) {
       const std::string text = app.get_subcommand(arguments->topic)->help(app.get_name());
       invocation.action = [text] {
         fmt::print("{}", text);

@@ -17,6 +17,8 @@ namespace palpate::cli {
 namespace {
 
 constexpr double kQuietSeconds = 1.0, kBetweenSeconds = 0.1;
+constexpr double kPipeSeconds = 10.0;    // Between two lines where standard error is no terminal.
+constexpr double kLeastFraction = 0.02;  // Below it the remaining time is not estimated.
 constexpr std::size_t kBarWidth = 24;
 
 int terminal_width() {
@@ -41,6 +43,13 @@ constexpr const char* kWipe = "\r\033[K";
 
 }  // namespace
 
+std::string progress_line(double fraction, double elapsed_s, const std::string& what) {
+  std::string out = fmt::format("palpate: {}: {:.0f} %", printable(what), 100.0 * fraction);
+  if (fraction > kLeastFraction && fraction < 1.0)
+    out += fmt::format(", {} left", duration_text(elapsed_s * (1.0 - fraction) / fraction));
+  return out;
+}
+
 std::string duration_text(double seconds) {
   const long s = std::lround(std::clamp(seconds, 0.0, 1e9));
   if (s < 60) return fmt::format("{} s", s);
@@ -57,13 +66,19 @@ Progress::~Progress() { wipe(); }
 
 void Progress::operator()(double fraction, const std::string& text) {
   const double now = wall_seconds();
-  if (!terminal_ || now - start_ < kQuietSeconds || now - last_ < kBetweenSeconds) return;
-  last_ = now;
   fraction = std::clamp(fraction, 0.0, 1.0);
+  if (!terminal_) {
+    if (now - std::max(start_, last_) < kPipeSeconds) return;
+    last_ = now;
+    fmt::print(stderr, "{}\n", progress_line(fraction, now - start_, text.empty() ? what_ : text));
+    return;
+  }
+  if (now - start_ < kQuietSeconds || now - last_ < kBetweenSeconds) return;
+  last_ = now;
   const auto filled = static_cast<std::size_t>(fraction * static_cast<double>(kBarWidth));
   std::string line = fmt::format("[{}{}] {:3.0f} %", std::string(filled, '#'),
                                  std::string(kBarWidth - filled, '-'), 100.0 * fraction);
-  if (fraction > 0.02)
+  if (fraction > kLeastFraction)
     line += fmt::format("  {} left", duration_text((now - start_) * (1.0 - fraction) / fraction));
   line += "  " + printable(text.empty() ? what_ : text);
   line.resize(std::min<std::size_t>(line.size(), static_cast<std::size_t>(terminal_width() - 1)));

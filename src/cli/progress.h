@@ -5,7 +5,7 @@ namespace palpate::cli {
 
 /// Progress line on standard error with the completed share and the remaining time: `assembling [#####-----]
 /// 50 %  12 s left`. It appears after the first second, is rewritten at most ten times per second and is
-/// erased at the end; it is not printed if standard error is no terminal.
+/// erased at the end. If standard error is no terminal, a line is written every ten seconds instead.
 class Progress {
  public:
   explicit Progress(std::string what);
@@ -25,6 +25,11 @@ class Progress {
   bool shown_ = false;
   double start_, last_ = 0.0;
 };
+
+/// Returns the line for a pipe or a log: "palpate: replaying out/run: 34 %, 2 min 10 s left".
+/// @param fraction  completed share, in [0, 1]
+/// @param elapsed_s  time since the start [s]
+std::string progress_line(double fraction, double elapsed_s, const std::string& what);
 
 /// Returns a duration as text: "3 s", "2 min 10 s", "1 h 5 min".
 std::string duration_text(double seconds);

@@ -24,7 +24,7 @@ try:
 except ImportError:  # package python3-h5py
     sys.exit("python3-h5py is missing")
 
-from program import LONG, NO_EGL, PROGRAM, QUICK_COMPARISON, TREE, Cli, open_terminal
+from program import LONG, NO_EGL, PROGRAM, PROGRESS, QUICK_COMPARISON, TREE, Cli, open_terminal
 
 COMMANDS = ["demo", "run", "compare", "study", "modes", "validate", "report", "inspect", "export", "list",
             "help", "bench"]
@@ -91,6 +91,12 @@ class Help(Cli):
     def test_help_of_a_command_is_its_own(self):
         self.assertEqual(self.good("help", "inspect"), self.good("inspect", "--help"))
         self.assertIn("matrix", self.good("help", "stability"))  # a page as well: the page is shown
+
+    def test_the_beginning_of_a_topic_or_its_singular_is_enough(self):
+        self.assertEqual(self.good("help", "device"), self.good("help", "devices"))
+        self.assertEqual(self.good("help", "scene"), self.good("help", "scenes"))
+        self.assertEqual(self.good("help", "insp"), self.good("inspect", "--help"))
+        self.assertIn("is the beginning of", self.refused("help", "st"))
 
     def test_unknown_topic(self):
         text = self.refused("help", "kys")
@@ -327,7 +333,22 @@ class Interrupt(Cli):
         self.assertLess(time.monotonic() - start, 60)
         self.assertRegex(out, r"(0 of 0|1 of 1) cases meet their acceptance limits; "
                               r"stopped before the other [12]\n$")
-        self.assertEqual(err, "palpate: stopped; the same command resumes from cut\n")
+        self.assertEqual(PROGRESS.sub("", err), "palpate: stopped; the same command resumes from cut\n")
+
+    def test_a_pipe_gets_a_line_of_progress_every_ten_seconds(self):
+        process = subprocess.Popen([str(PROGRAM), "run", "one-tet", "--duration-s", "2000", "-o", "piped"],
+                                   cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                   text=True)
+        start = time.monotonic()
+        try:
+            line = process.stderr.readline()
+            taken = time.monotonic() - start
+        finally:
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=120)
+        self.assertRegex(line, PROGRESS)
+        self.assertIn("running one-tet", line)
+        self.assertGreater(taken, 9)
 
     def test_progress_bar_on_a_terminal_with_time_left(self):
         terminal, end = open_terminal()

@@ -1,6 +1,7 @@
 """The program under test, called from its command line. Its path is the first argument of each test."""
 import os
 import pty
+import re
 import shutil
 import subprocess
 import sys
@@ -13,6 +14,8 @@ TREE = Path(__file__).resolve().parents[2]
 QUICK_COMPARISON = ["--limit-s", "1", "--duration-s", "0.05", "--repeats", "1",
                     "--set", "body.0.mesh.element_size_m=0.05"]
 LONG = ["run", "one-tet", "--duration-s", "1e6"]  # ends only when it is stopped
+# What a pipe gets every ten seconds, on a slow machine.
+PROGRESS = re.compile(r"^palpate: .+: \d+ %(, .+ left)?\n", re.M)
 NO_EGL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nowhere.json"}  # libglvnd then finds no driver
 
 
@@ -34,6 +37,7 @@ class Cli(unittest.TestCase):
         done = subprocess.run([str(PROGRAM), *arguments], capture_output=True, text=True, cwd=self.folder,
                               timeout=300, env=dict(os.environ, **environment), stdin=subprocess.DEVNULL)
         self.assertNotIn("\033", done.stdout + done.stderr)  # no terminal, no control codes
+        done.stderr = PROGRESS.sub("", done.stderr)
         return done
 
     def good(self, *arguments, **environment):
