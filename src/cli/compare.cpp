@@ -96,13 +96,13 @@ void show(const compare::Comparison& comparison, const std::string& folder, Miss
     print_reference(scene);
     const report::Table own = report::rows_where(table, "scene", scene.scene);
     if (own.rows.empty()) continue;
+    fmt::print("{}\n\n", report::in_words(own, reference_of(scene.reference)));
     print_trials(scene);
     print_points(scene);
     print_prices(own, scene.reference.own_error.position_rel_l2);
     print_restarts(scene);
     print_exchange(scene);
     print_methods(scene);
-    fmt::print("{}\n\n", report::in_words(own, reference_of(scene.reference)));
   }
   fmt::print("{}\n", comparison.rules);
   if (table.rows.empty()) return;

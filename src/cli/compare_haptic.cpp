@@ -61,33 +61,44 @@ std::string outcome_of(const HapticPoint& p) {
   return short_reason(p.reason);
 }
 
+/// Whether the reference has a torque on the hand, or there is none to tell.
+bool has_torque(const HapticComparison& c) { return !c.reference.available || c.peak_torque_n_m > 0.0; }
+
 void print_points(const HapticComparison& c) {
+  const bool torque = has_torque(c);
+  std::vector<std::string> headers = {"variable",  "",           "force [N]", "% RMS",
+                                      "% max",     "CPU [s]",    "query [s]", "linearise [s]",
+                                      "ticks [s]", "bodies [s]", ""};
+  if (torque) headers.insert(headers.begin() + 5, {"torque [N m]", "% RMS", "% max"});
   std::vector<std::vector<std::string>> rows;
   for (const HapticPoint& p : c.points) {
     if (p.status == compare::Status::kMissing) continue;  // not computed: the comparison was stopped
     const bool ran = p.status == compare::Status::kOk;
     const auto time = [ran](double s) { return ran ? fmt::format("{:.3f}", s) : std::string("-"); };
-    rows.push_back(
-        {p.variable, p.value, report::short_number(p.error.force_rms_n),
-         percent(p.error.force_rms_n, c.peak_force_n), percent(p.error.force_max_n, c.peak_force_n),
-         report::short_number(p.error.torque_rms_n_m), percent(p.error.torque_rms_n_m, c.peak_torque_n_m),
-         percent(p.error.torque_max_n_m, c.peak_torque_n_m), time(p.cpu_median_s), time(p.result.query_s),
-         time(p.result.linearise_s), time(p.result.tool_s), time(p.bodies_s()), outcome_of(p)});
+    rows.push_back({p.variable, p.value, report::short_number(p.error.force_rms_n),
+                    percent(p.error.force_rms_n, c.peak_force_n),
+                    percent(p.error.force_max_n, c.peak_force_n), time(p.cpu_median_s),
+                    time(p.result.query_s), time(p.result.linearise_s), time(p.result.tool_s),
+                    time(p.bodies_s()), outcome_of(p)});
+    if (torque)
+      rows.back().insert(rows.back().begin() + 5, {report::short_number(p.error.torque_rms_n_m),
+                                                   percent(p.error.torque_rms_n_m, c.peak_torque_n_m),
+                                                   percent(p.error.torque_max_n_m, c.peak_torque_n_m)});
   }
-  fmt::print("{}\n", report::format_table(
-                         {"variable", "", "force [N]", "% RMS", "% max", "torque [N m]", "% RMS", "% max",
-                          "CPU [s]", "query [s]", "linearise [s]", "ticks [s]", "bodies [s]", ""},
-                         rows));
+  fmt::print("{}\n", report::format_table(headers, rows));
 }
 
 void print_reference(const HapticComparison& c) {
   const compare::Reference& r = c.reference;
   fmt::print("{}: reference {}; {:.3g} s of CPU\n", c.scene, r.description, r.cpu_s);
-  fmt::print("{}: peak {:.4g} N and {:.4g} N m; reference error {} N and {} N m, {} % and {} %\n", c.scene,
-             c.peak_force_n, c.peak_torque_n_m, report::short_number(r.own_error.force_rms_n),
-             report::short_number(r.own_error.torque_rms_n_m),
-             percent(r.own_error.force_rms_n, c.peak_force_n),
-             percent(r.own_error.torque_rms_n_m, c.peak_torque_n_m));
+  fmt::print("{}: peak force {:.4g} N, reference error {} N ({} %)\n", c.scene, c.peak_force_n,
+             report::short_number(r.own_error.force_rms_n), percent(r.own_error.force_rms_n, c.peak_force_n));
+  if (c.peak_torque_n_m > 0.0)
+    fmt::print("{}: peak torque {:.4g} N m, reference error {} N m ({} %)\n", c.scene, c.peak_torque_n_m,
+               report::short_number(r.own_error.torque_rms_n_m),
+               percent(r.own_error.torque_rms_n_m, c.peak_torque_n_m));
+  else if (r.available)
+    fmt::print("{}: no torque on the hand\n", c.scene);
   if (!r.trouble.empty()) fmt::print("{}: {}\n", c.scene, r.trouble);
   fmt::print("\n");
 }
@@ -99,8 +110,9 @@ std::string order_text(double order, int points) {
 
 void print_orders(const HapticComparison& c) {
   for (const compare::HapticOrder& order : c.orders)
-    fmt::print("observed order by {}: force {}, torque {}\n", order.variable,
-               order_text(order.force, order.force_points), order_text(order.torque, order.torque_points));
+    fmt::print("observed order by {}: force {}{}\n", order.variable,
+               order_text(order.force, order.force_points),
+               has_torque(c) ? ", torque " + order_text(order.torque, order.torque_points) : "");
   fmt::print("\n");
 }
 

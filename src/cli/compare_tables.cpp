@@ -25,6 +25,11 @@ std::string outcome_text(const compare::ComparePoint& p) {
   return short_reason(p.reason);
 }
 
+/// Whether the reference has a torque on the hand, or there is none to tell.
+bool has_torque(const compare::SceneComparison& scene) {
+  return scene.tool && (!scene.reference.available || scene.reference.peak_torque_n_m > 0.0);
+}
+
 /// Returns the end of a sequence of neighbouring levels with the same failure, which one line represents.
 std::size_t end_of_failures(const std::vector<compare::ComparePoint>& points, std::size_t first) {
   std::size_t end = first + 1;
@@ -45,7 +50,9 @@ std::string short_reason(const std::string& reason) {
 void print_points(const compare::SceneComparison& scene) {
   std::vector<std::string> headers = {"integrator",    "setting", "error test",  "position error", "CPU [s]",
                                       "linear solver", "steps",   "force evals", "factors",        ""};
-  if (scene.tool) headers.insert(headers.begin() + 4, {"force error [N]", "torque error [N m]"});
+  const bool torque = has_torque(scene);
+  if (torque) headers.insert(headers.begin() + 4, "torque error [N m]");
+  if (scene.tool) headers.insert(headers.begin() + 4, "force error [N]");
   Rows rows;
   for (std::size_t i = 0; i < scene.points.size(); i = end_of_failures(scene.points, i)) {
     const compare::ComparePoint& p = scene.points[i];
@@ -61,9 +68,8 @@ void print_points(const compare::SceneComparison& scene) {
                     ran ? fmt::format("{:.3f}", p.cpu_median_s) : "-",
                     p.linear_solver.empty() ? "-" : p.linear_solver, count(c.steps),
                     count(c.force_evaluations), count(c.solver.factorisations), outcome_text(p)});
-    if (scene.tool)
-      rows.back().insert(rows.back().begin() + 4, {report::short_number(p.error.force_rms_n),
-                                                   report::short_number(p.error.torque_rms_n_m)});
+    if (torque) rows.back().insert(rows.back().begin() + 4, report::short_number(p.error.torque_rms_n_m));
+    if (scene.tool) rows.back().insert(rows.back().begin() + 4, report::short_number(p.error.force_rms_n));
   }
   if (rows.size() <= kPointsOnScreen)
     fmt::print("{}\n", report::format_table(headers, rows));
@@ -137,40 +143,52 @@ void print_exchange(const compare::SceneComparison& scene) {
   fmt::print("monolithic solution by {}, checked by {}; reference error: position {}, force {} N\n",
              study.made_by, study.checked_by, report::short_number(study.own_error.position_rel_l2),
              report::short_number(study.own_error.force_rms_n));
+  std::vector<std::string> headers = {"exchange period [ms]", "position error", "force error [N]", "CPU [s]",
+                                      ""};
+  const bool torque = has_torque(scene);
+  if (torque) headers.insert(headers.begin() + 3, "torque error [N m]");
   Rows rows;
-  for (const compare::ExchangePoint& p : study.points)
+  for (const compare::ExchangePoint& p : study.points) {
+    const std::string outcome = !p.trouble.empty()                   ? short_reason(p.trouble)
+                                : p.unresolved || p.force_unresolved ? "not resolved by the reference"
+                                                                     : "";
     rows.push_back({fmt::format("{:g}", 1e3 * p.exchange_period_s),
-                    fmt::format("{:.2e}", p.error.position_rel_l2),
-                    fmt::format("{:.2e}", p.error.force_rms_n), fmt::format("{:.2e}", p.error.torque_rms_n_m),
-                    fmt::format("{:.3f}", p.cpu_s),
-                    p.unresolved || p.force_unresolved ? "not resolved by the reference" : ""});
-  fmt::print("{}\n", report::format_table({"exchange period [ms]", "position error", "force error [N]",
-                                           "torque error [N m]", "CPU [s]", ""},
-                                          rows));
+                    report::short_number(p.error.position_rel_l2), report::short_number(p.error.force_rms_n),
+                    fmt::format("{:.3f}", p.cpu_s), outcome});
+    if (torque) rows.back().insert(rows.back().begin() + 3, report::short_number(p.error.torque_rms_n_m));
+  }
+  fmt::print("{}\n", report::format_table(headers, rows));
 }
 
 void print_methods(const compare::SceneComparison& scene) {
   if (scene.methods.empty()) return;
   Rows rows;
-  for (const compare::MethodPoint& p : scene.methods)
-    rows.push_back({p.method, fmt::format("{:.2e}", p.difference.position_rel_l2),
-                    fmt::format("{:.2e}", p.difference.force_rms_n), fmt::format("{:.4f}", p.peak_force_n),
-                    std::to_string(p.most_samples), fmt::format("{:.3f}", p.query_s),
-                    fmt::format("{:.3f}", p.cpu_s)});
+  for (const compare::MethodPoint& p : scene.methods) {
+    const bool ran = p.trouble.empty();
+    const auto cell = [ran](const std::string& text) { return ran ? text : std::string("-"); };
+    rows.push_back({p.method, cell(report::short_number(p.difference.position_rel_l2)),
+                    cell(report::short_number(p.difference.force_rms_n)),
+                    cell(report::short_number(p.peak_force_n, 4)), cell(std::to_string(p.most_samples)),
+                    cell(fmt::format("{:.3f}", p.query_s)), cell(fmt::format("{:.3f}", p.cpu_s)),
+                    short_reason(p.trouble)});
+  }
   fmt::print("{}\n", report::format_table({"contact method", "position difference", "force difference [N]",
-                                           "peak force [N]", "samples", "queries [s]", "CPU [s]"},
+                                           "peak force [N]", "samples", "queries [s]", "CPU [s]", ""},
                                           rows));
 }
 
 void print_reference(const compare::SceneComparison& scene) {
   const compare::Reference& r = scene.reference;
+  std::string force;
+  if (scene.tool && std::isfinite(r.own_error.force_rms_n)) {
+    force = fmt::format(", force {:.1e} N", r.own_error.force_rms_n);
+    force += has_torque(scene) ? fmt::format(", torque {:.1e} N m", r.own_error.torque_rms_n_m)
+                               : std::string("; no torque on the hand");
+  }
   fmt::print("{}: reference {}; reference error: position {}{}\n", scene.scene, r.description,
              std::isfinite(r.own_error.position_rel_l2) ? fmt::format("{:.1e}", r.own_error.position_rel_l2)
                                                         : "unknown",
-             scene.tool && std::isfinite(r.own_error.force_rms_n)
-                 ? fmt::format(", force {:.1e} N, torque {:.1e} N m", r.own_error.force_rms_n,
-                               r.own_error.torque_rms_n_m)
-                 : "");
+             force);
   if (!r.trouble.empty()) fmt::print("{}: {}\n", scene.scene, r.trouble);
   for (const compare::MissingChart& chart : scene.missing_charts)
     fmt::print("{}: {}\n", scene.scene, chart.text());

@@ -49,10 +49,17 @@ std::string read_text(const std::string& path) {
 }
 
 std::string first_comment(const std::string& path) {
-  const std::string text = read_text(path);
-  const std::size_t begin = text.find_first_not_of("# \t\r\n");
-  if (text.empty() || text[0] != '#' || begin == std::string::npos) return "";
-  return text.substr(begin, text.find('\n', begin) - begin);
+  std::istringstream lines(read_text(path));
+  std::string out;
+  for (std::string line; std::getline(lines, line) && line.size() > 1 && line[0] == '#';) {
+    const std::size_t begin = line.find_first_not_of("# \t\r");
+    if (begin == std::string::npos) break;
+    if (!out.empty()) out += ' ';
+    out += line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin);
+    if (const std::size_t end = out.find(". "); end != std::string::npos) return out.substr(0, end + 1);
+    if (out.back() == '.') break;
+  }
+  return out;
 }
 
 }  // namespace palpate::cli

@@ -18,7 +18,7 @@ std::string default_folder(const std::string& name);
 /// Returns the content of a text file.  @throws Error if it cannot be read
 std::string read_text(const std::string& path);
 
-/// Returns the first comment line of a scene file, its description.
+/// Returns the first sentence of the comment at the start of a scene file, its description.
 std::string first_comment(const std::string& path);
 
 }  // namespace palpate::cli

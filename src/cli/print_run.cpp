@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "cli/scene_of.h"
 #include "core/clock.h"
+#include "core/rounding.h"
 #include "core/time_text.h"
 #include "loop/registries.h"
+#include "palpate/scene/hands.h"
 #include "session/command_line.h"
 #include "session/reference_remarks.h"
 #include "session/run_files.h"
@@ -16,12 +19,30 @@
 namespace palpate::cli {
 namespace {
 
-void print_hand(const std::string& who, const loop::PeakWrench& peak, long ticks, long limited) {
-  fmt::print(
-      "on {}: at most {:.4g} N (at {} s) and {:.4g} N m (at {} s) in {} ticks; {} held at the device's "
-      "limit\n",
-      who, peak.force_n, time_text(peak.force_at_s), peak.torque_n_m, time_text(peak.torque_at_s), ticks,
-      limited);
+/// Returns the size of a scene's coordinates [m]: bodies at the start, tools, and their handles.
+double size_of(const loop::World& world) {
+  double out = 0.0;
+  for (const loop::Body& body : world.bodies)
+    if (body.placed.size() > 0) out = std::max(out, body.placed.cwiseAbs().maxCoeff());
+  for (const scene::Hand& hand : scene::hands_of(world.description))
+    out = std::max(out, hand.tool->position_m.cwiseAbs().maxCoeff());
+  return out;
+}
+
+void print_hand(const std::string& who, const loop::PeakWrench& peak, double size_m, long ticks,
+                long limited) {
+  std::string out = fmt::format("on {}: ", who);
+  if (peak.force_n > 0.0)
+    out += fmt::format("at most {:.4g} N (at {} s)", peak.force_n, time_text(peak.force_at_s));
+  else
+    out += "no force";
+  if (peak.torque_n_m > torque_rounding(peak.force_n, size_m))
+    out += fmt::format(" and {:.4g} N m (at {} s)", peak.torque_n_m, time_text(peak.torque_at_s));
+  else
+    out += ", no torque";
+  out += fmt::format(", in {} ticks", ticks);
+  if (limited > 0) out += fmt::format("; {} of them held at the device's limit", limited);
+  fmt::print("{}\n", out);
 }
 
 /// Prints the requested tolerance, and the tolerance of the error test that the method derives from it.
@@ -58,24 +79,26 @@ void print_checkpoints(const loop::CheckpointCost& cost, double every_s) {
 
 void print_outcome(const loop::World& world, const session::RunOutput& ran, const session::Options& options) {
   const loop::RunResult& result = ran.result;
-  if (ran.trace)
-    fmt::print("trace: {} attempted steps, {} rejected; an error of 1 is the tolerance of the error test\n",
-               ran.trace->attempted, ran.trace->rejected);
   const std::vector<loop::PeakWrench>& peaks = ran.figures.peaks();
   fmt::print("{}: {} s simulated in {:.2f} s, assembled in {:.2f} s, peak memory {:.0f} MiB\n",
              short_name(world.description), time_text(result.time), result.wall_s, ran.assemble_s,
              peak_memory_mib());
+  const double size_m = size_of(world);
+  if (!peaks.empty()) print_hand("the hand", peaks[0], size_m, result.ticks, result.limited_ticks);
+  for (std::size_t i = 0; i < result.more_hands.size() && i + 1 < peaks.size(); ++i)
+    print_hand(fmt::format("hand \"{}\"", world.description.hands[i].name), peaks[i + 1], size_m,
+               result.more_hands[i].ticks, result.more_hands[i].limited_ticks);
   if (world.stepper) {
     const dynamics::StepperCounters& c = result.counters;
-    fmt::print("{}: {} steps, {} force and {} tangent evaluations, {} factorisations, {} contact queries\n",
+    fmt::print("{}: {} steps, {} force and {} tangent evaluations, {} factorisations{}\n",
                world.stepper->name(), c.steps, c.force_evaluations, c.tangent_evaluations,
-               c.solver.factorisations, result.contact_queries);
+               c.solver.factorisations,
+               result.contact_queries > 0 ? fmt::format(", {} contact queries", result.contact_queries) : "");
     print_tolerance(world.description.integrator);
   }
-  if (!peaks.empty()) print_hand("the hand", peaks[0], result.ticks, result.limited_ticks);
-  for (std::size_t i = 0; i < result.more_hands.size() && i + 1 < peaks.size(); ++i)
-    print_hand(fmt::format("hand \"{}\"", world.description.hands[i].name), peaks[i + 1],
-               result.more_hands[i].ticks, result.more_hands[i].limited_ticks);
+  if (ran.trace)
+    fmt::print("trace: {} attempted steps, {} rejected; an error of 1 is the tolerance of the error test\n",
+               ran.trace->attempted, ran.trace->rejected);
   if (result.real_time) print_clock(*result.real_time);
   for (const std::string& remark : ran.remarks) fmt::print("{}\n", remark);
   if (options.checkpoint_every_s > 0.0) print_checkpoints(ran.checkpoints, options.checkpoint_every_s);

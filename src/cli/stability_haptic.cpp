@@ -119,6 +119,8 @@ std::vector<std::string> verdicts_of(const ZWidth& z, double tick_s,
   for (const std::string& one : unstable_points(turning, "rotation")) unstable.push_back(one);
   if (!unstable.empty())
     out.push_back(fmt::format("the loop of this scene is UNSTABLE: {}", fmt::join(unstable, ", ")));
+  else
+    out.emplace_back("the loop of this scene is stable, in the air and in contact");
   for (const OperatingPoint& p : points)
     out.push_back(fmt::format("{}, translation: {}", p.name, p.words(tick_s)));
   for (const OperatingPoint& p : turning)
@@ -197,8 +199,11 @@ int stability_haptic(const StabilityArguments& a) {
     options.stop = &stop_flag();
     z = z_width(loop, options);
   }
+  const double scale = rotation.lever_m * rotation.lever_m;
+  const std::vector<std::string> verdicts = verdicts_of(z, loop.tick_s, points, turning, scale);
+  for (const std::string& verdict : verdicts) fmt::print("{}\n", verdict);
   fmt::print(
-      "device of {:g} kg and {:g} N s/m{}, tick {:g} ms, delay {} ticks; coupling {:g} N/m, {:g} N s/m\n\n",
+      "\ndevice of {:g} kg and {:g} N s/m{}, tick {:g} ms, delay {} ticks; coupling {:g} N/m, {:g} N s/m\n\n",
       loop.device.mass_kg, loop.device.damping_n_s_m, arm_text(loop.device), 1e3 * loop.tick_s,
       loop.delay_ticks, loop.coupling_stiffness_n_m, loop.coupling_damping_n_s_m);
   print_rows(z);
@@ -209,13 +214,10 @@ int stability_haptic(const StabilityArguments& a) {
 
   MissingOutputs missing;
   write_csv(z, (fs::path(folder) / "z_width.csv").string());
-  const double scale = rotation.lever_m * rotation.lever_m;
-  const std::vector<std::string> verdicts = verdicts_of(z, loop.tick_s, points, turning, scale);
   keep_summary(a, description, z, loop.coupling_damping_n_s_m, points, rotation, turning, verdicts, folder);
   const report::RunReport written = report::write_run_report(folder);
   report::add_missing(written, missing);
   fmt::print("\nwritten: {}\n", written.page.string());
-  for (const std::string& verdict : verdicts) fmt::print("{}\n", verdict);
   if (z.stopped) return kExitStopped;
   const bool stable = unstable_points(points, "").empty() && unstable_points(turning, "").empty();
   return missing.close(

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/rounding.h"
+
 namespace palpate::session {
 namespace {
 
@@ -18,8 +20,12 @@ std::string line_of(const char* what, double rms, double max, double peak, const
 void add_lines(const std::string& whose, const compare::HandError& felt, std::vector<std::string>& out) {
   const compare::TrajectoryError& e = felt.error;
   out.push_back(whose + line_of("force error", e.force_rms_n, e.force_max_n, felt.peak_force_n, "N"));
-  out.push_back(whose +
-                line_of("torque error", e.torque_rms_n_m, e.torque_max_n_m, felt.peak_torque_n_m, "N m"));
+  constexpr double kSize = 1.0;  // Of a haptic scene [m].
+  if (felt.peak_torque_n_m == 0.0 && e.torque_max_n_m <= torque_rounding(felt.peak_force_n, kSize))
+    out.push_back(whose + "no torque, in either");
+  else
+    out.push_back(whose +
+                  line_of("torque error", e.torque_rms_n_m, e.torque_max_n_m, felt.peak_torque_n_m, "N m"));
 }
 
 }  // namespace

@@ -54,7 +54,8 @@ struct Reference {
   bool available = false;   ///< Without a reference no point has an error.
   /// Reference error: distance of two method families at tight tolerance; NaN without a check.
   TrajectoryError own_error = no_distance();
-  double peak_force_n = 0.0, peak_torque_n_m = 0.0;  ///< Peaks on the hand.
+  /// Peaks on the hand; a torque that is only rounding is zero.
+  double peak_force_n = 0.0, peak_torque_n_m = 0.0;
   double cpu_s = 0.0;                                ///< CPU time of the run that serves as reference [s].
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/rounding.h"
 #include "loop/replay.h"
 #include "loop/run_figures.h"
 #include "palpate/core/error.h"
@@ -31,7 +32,8 @@ HandError hand_error(const Trajectory& felt, const Trajectory& reference) {
   HandError out;
   const loop::PeakWrench peak = loop::peak_of(reference.device, reference.tick_times);
   out.peak_force_n = peak.force_n;
-  out.peak_torque_n_m = peak.torque_n_m;
+  constexpr double kSize = 1.0;  // Of a haptic scene [m].
+  if (peak.torque_n_m > torque_rounding(peak.force_n, kSize)) out.peak_torque_n_m = peak.torque_n_m;
   out.error = wrench_distance(felt, reference);
   return out;
 }

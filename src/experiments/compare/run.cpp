@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/archive_bytes.h"
+#include "core/rounding.h"
 #include "experiments/compare/run_archive.h"
 #include "loop/run_figures.h"
 #include "palpate/core/error.h"
@@ -72,7 +73,10 @@ Reference settle(const PlannedReference& planned, const ReferenceRun& primary, c
   out.cpu_s = used.result.cpu_s;
   const loop::PeakWrench peak = loop::peak_of(used.trajectory.device, used.trajectory.tick_times);
   out.peak_force_n = peak.force_n;
-  out.peak_torque_n_m = peak.torque_n_m;
+  // Without positions, wrenches are compared: haptic scenes are of the size of a metre.
+  const VecX& start = used.trajectory.start;
+  const double size_m = start.size() > 0 ? start.cwiseAbs().maxCoeff() : 1.0;
+  if (peak.torque_n_m > torque_rounding(peak.force_n, size_m)) out.peak_torque_n_m = peak.torque_n_m;
   return out;
 }
 
