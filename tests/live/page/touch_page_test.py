@@ -62,9 +62,10 @@ class TouchPage(unittest.TestCase):
             "(() => { palpateTest.draw(); const view = document.getElementById('view'), copy = "
             "document.createElement('canvas'); copy.width = 300; copy.height = 240; const pen = "
             "copy.getContext('2d', {willReadFrequently: true}); pen.drawImage(view, 0, 0, 300, 240); "
-            "const d = pen.getImageData(0, 0, 300, 240).data; let body = 0, warm = 0; for (let i = 0; i < d.length; "
-            "i += 4) { body += Math.abs(d[i] - d[0]) + Math.abs(d[i + 2] - d[2]) > 24; "
-            "warm += d[i] > 1.6 * d[i + 2]; } return [body / 72000, warm / 72000]; })()")
+            "const d = pen.getImageData(0, 0, 300, 240).data; let body = 0, warm = 0; "
+            "for (let i = 0; i < d.length; i += 4) { warm += d[i] > 1.6 * d[i + 2]; "
+            "body += Math.abs(d[i] - d[0]) + Math.abs(d[i + 2] - d[2]) > 24; } "
+            "return [body / 72000, warm / 72000]; })()")
 
     def press(self):
         """Takes the handle and drags the tool to the right, into the face, until a force is shown."""

@@ -1,5 +1,5 @@
 // Colours of displacement, from a body at rest to the end of the range: kRamp of src/core/object_colours.h,
-// the same in pictures and movies (tests/live/page/colours_test.py compares).
+// the same in pictures and movies (tests/live/page/sources_test.py compares).
 import { DataTexture, LinearFilter, RGBAFormat, UnsignedByteType, Vector3 } from "three";
 
 export const RAMP = [

@@ -20,6 +20,9 @@ function isSoftware() {
 /// The range of colours shrinks only after the displacement has been smaller for so long [s].
 const SHRINK_AFTER_S = 4;
 
+/// The dent shows through the tool.
+const TOOL_OPACITY = 0.55;
+
 export class Stage {
   constructor(canvas) {
     this.canvas = canvas;
@@ -70,7 +73,7 @@ export class Stage {
     this.clear();
     this.description = scene;
     this.bodies = scene.bodies.map((one, i) => new Body(one, shapes.bodies[i], this.ramp, this.onProcessor));
-    this.tools = scene.tools.map((one, i) => makeSolid(one, shapes.tools[i]));
+    this.tools = scene.tools.map((one, i) => makeSolid({ ...one, opacity: TOOL_OPACITY }, shapes.tools[i]));
     this.bones = scene.bones.map((one, i) => makeSolid(one, shapes.bones[i]));
     const obstacles = scene.obstacles.map((one, i) => makeSolid(one, shapes.obstacles[i]));
     if (this.bones.length > 0) for (const body of this.bodies) body.seeThrough(0.55);
