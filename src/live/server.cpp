@@ -2,7 +2,12 @@
 
 #include <arpa/inet.h>
 #include <libwebsockets.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <thread>
 
 #include "live/access.h"
@@ -16,7 +21,29 @@ namespace {
 void log_line(int /*level*/, const char* line) {
   std::string text(line);
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
-  log::warn("page of palpate touch: {}", text);
+  log::debug("libwebsockets: {}", text);
+}
+
+/// Checks that the server can listen there, since libwebsockets does not return the reason if it cannot.
+/// @throws Error with the reason
+void check_listening(const std::string& name, in_addr address, int port) {
+  const int probe = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int on = 1;
+  if (probe >= 0) ::setsockopt(probe, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  sockaddr_in place{};
+  place.sin_family = AF_INET;
+  place.sin_addr = address;
+  place.sin_port = htons(static_cast<std::uint16_t>(port));
+  const bool can_bind = probe >= 0 && ::bind(probe, reinterpret_cast<sockaddr*>(&place), sizeof place) == 0 &&
+                        ::listen(probe, 1) == 0;
+  const int error = errno;
+  if (probe >= 0) ::close(probe);
+  if (can_bind) return;
+  if (error == EADDRNOTAVAIL)
+    fail("--address {}: is no address of this machine; use 127.0.0.1, or an address that `ip address` lists",
+         name);
+  fail("--port {}: cannot listen on {}:{} ({}); choose another port, or 0 for any free one", port, name, port,
+       std::strerror(error));
 }
 
 int on_event(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* in, std::size_t length) {
@@ -45,6 +72,7 @@ Server::Impl::Impl(ServerOptions options_in, Controls& controls_in, Broadcast& b
   if (::inet_pton(AF_INET, options.address.c_str(), &address) != 1)
     fail("--address {}: is not an IPv4 address; use 127.0.0.1 for viewers on this machine only",
          options.address);
+  check_listening(options.address, address, options.port);
   loopback = (ntohl(address.s_addr) >> 24) == 127;
   lws_set_log_level(LLL_ERR, log_line);
   lws_context_creation_info info{};

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Who may connect to `palpate touch`, and what it does with other messages."""
 import socket
+import subprocess
 import sys
 import tempfile
 import shutil
@@ -64,6 +65,17 @@ class Security(unittest.TestCase):
             listening = [line.split()[1] for line in table if line.split()[3] == "0A"]
         own = [address for address in listening if address.endswith(f":{self.server.port:04X}")]
         self.assertEqual([address.split(":")[0] for address in own], ["0100007F"])
+
+    def test_a_port_in_use_and_a_foreign_address_are_errors_of_one_line(self):
+        for arguments, part in ((["--port", str(self.server.port)], "Address already in use"),
+                                (["--address", "192.0.2.1"], "is no address of this machine"),
+                                (["--address", "localhost"], "is not an IPv4 address")):
+            done = subprocess.run([str(PROGRAM), "touch", "falling-ball", "--no-browser", *arguments],
+                                  capture_output=True, text=True, timeout=60, cwd=self.folder)
+            self.assertEqual((done.returncode, done.stdout), (1, ""))
+            self.assertTrue(done.stderr.startswith("palpate: error: --"), done.stderr)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            self.assertIn(part, done.stderr)
 
     def test_bad_messages_end_a_viewer_and_no_other(self):
         good, bad = self.server.viewer(), self.server.viewer()
