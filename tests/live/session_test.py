@@ -111,6 +111,27 @@ class Session(unittest.TestCase):
             compared += 1
         self.assertGreater(compared, 10)
 
+    def test_a_recording_of_the_single_rate_scheme_replays_bitwise(self):
+        server = self.serve("press-ball", "--scheme", "single_rate", "--integrator", "linearly-implicit-euler",
+                            "--set", "integrator.step_s=0.001")
+        viewer = self.watch(server)
+        self.assertEqual(viewer.scene["scheme"], "single_rate")
+        viewer.send(type="set", key="body.0.youngs_modulus_pa", value=2e4)  # kept by the recording
+        viewer.send(type="record", on=True)
+        viewer.until(lambda: viewer.states[-1]["recording"] and len(viewer.frames) >= 2, 60)
+        viewer.send(type="set", key="body.0.youngs_modulus_pa", value=3e4)
+        viewer.until(lambda: any("recording has one set" in text.get("text", "") for text in viewer.texts))
+        self.drag(viewer, 0.014)
+        self.assertGreater(viewer.frames[-1]["hands"][0]["force"][2], 0.1)
+        viewer.send(type="record", on=False)
+        viewer.until(lambda: any(text["type"] == "recorded" for text in viewer.texts), 60)
+        folder = self.folder / "out/press-ball-touch-1"
+        self.assertIn("youngs_modulus_pa = 20000", (folder / "scene.toml").read_text())
+        done = subprocess.run([str(PROGRAM), "replay", str(folder)], cwd=self.folder, capture_output=True,
+                              text=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("bitwise", done.stdout)
+
     def test_one_holds_the_handle_and_others_watch(self):
         server = self.serve("press-ball")
         one, two = self.watch(server), self.watch(server)
