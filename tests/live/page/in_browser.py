@@ -48,7 +48,7 @@ class InBrowser(unittest.TestCase):
     def show(self, query="", width=1280, height=800, dark=False):
         self.tab.size(width, height, dark)
         self.tab.open(self.mock.address + query)
-        self.tab.wait_for("window.palpateTest && palpateTest.frames() > 2 && "
+        self.tab.wait_for("window.palpateTest && palpateTest.frames() > 0 && "
                           f"{READING}.pose !== undefined", 60)
 
     def messages(self, kind):

@@ -4,6 +4,7 @@ import { Body } from "./body.js";
 import { Camera } from "./camera.js";
 import { HandView } from "./hand_view.js";
 import { niceAbove } from "./numbers.js";
+import { looksDifferent, Sharpness } from "./pace.js";
 import { rampTexture } from "./ramp.js";
 import { makeSolid, place, radiusOf } from "./solids.js";
 
@@ -19,6 +20,9 @@ function isSoftware() {
 
 /// The range of colours shrinks only after the displacement has been smaller for so long [s].
 const SHRINK_AFTER_S = 4;
+
+/// A part of a pixel that cannot be seen.
+const QUARTER_PIXEL = 0.25;
 
 /// The dent shows through the tool.
 const TOOL_OPACITY = 0.55;
@@ -36,6 +40,11 @@ export class Stage {
       powerPreference: "high-performance" });
     this.renderer = new WebGLRenderer({ canvas, context });
     this.mostPixelRatio = software ? 1 : 2;
+    this.pixelShare = 1;
+    this.sharpness = software ? new Sharpness((share) => {
+      this.pixelShare = share;
+      this.resize();
+    }) : null;
     this.scene = new Scene();
     this.camera = new Camera();
     this.ramp = rampTexture();
@@ -95,7 +104,13 @@ export class Stage {
     return this.description.tools.findIndex((one) => one.hand === hand);
   }
 
+  /// Draws a frame, unless it looks like the one that is drawn.
   show(frame) {
+    this.sharpness?.received();
+    if (!this.pending && this.frame) {
+      const length_m = QUARTER_PIXEL * this.camera.metresPerPixel(this.camera.target);
+      if (!looksDifferent(frame, this.frame, length_m, this.ranges)) return;
+    }
     this.pending = frame;
     this.redraw();
   }
@@ -107,7 +122,10 @@ export class Stage {
 
   draw() {
     this.asked = 0;
-    if (this.pending) this.move(this.pending);
+    if (this.pending) {
+      this.move(this.pending);
+      this.sharpness?.drew(performance.now());
+    }
     for (const body of this.bodies) body.lookFrom(this.camera.lens.position);
     this.renderer.render(this.scene, this.camera.lens);
     ++this.frames;
@@ -141,6 +159,14 @@ export class Stage {
     this.peaks.push({ at: now, value: most });
     this.range_m = Math.max(niceAbove(this.peaks[0].value), niceAbove(2e-3 * this.sceneRadius()));
     for (const body of this.bodies) body.colourBy(this.coloured ? this.range_m : null);
+  }
+
+  /// The range shrinks also while nothing moves.
+  updateRange() {
+    if (!this.frame) return;
+    const before = this.range_m;
+    this.colour();
+    if (this.range_m !== before) this.redraw();
   }
 
   sceneRadius() {
@@ -195,7 +221,7 @@ export class Stage {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(this.mostPixelRatio, devicePixelRatio || 1));
+    this.renderer.setPixelRatio(this.pixelShare * Math.min(this.mostPixelRatio, devicePixelRatio || 1));
     this.renderer.setSize(width, height, false);
     this.camera.resize(width, height);
     this.redraw();

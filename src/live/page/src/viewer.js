@@ -92,6 +92,7 @@ const on = {
     showHolding();
     showState(state, scene);
     controls.show(state);
+    stage.updateRange();
     if (stage.range_m && stage.range_m !== shown) showLegend(shown = stage.range_m);
     element("legend").dataset.displacement = Math.max(0, ...stage.bodies.map((one) => one.displacement_m));
     element("busy").hidden = !state.message;
