@@ -48,7 +48,8 @@ class TouchPage(unittest.TestCase):
         self.addCleanup(self.tab.close)
         self.tab.size(1280, 800)
         self.tab.open(f"http://127.0.0.1:{self.server.port}/?token={self.server.token}")
-        self.tab.wait_for("window.palpateTest && palpateTest.frames() > 0", 120)
+        self.tab.wait_for("window.palpateTest && "
+                          "document.getElementById('reading').dataset.pose !== undefined", 120)
 
     def sample(self):
         """Returns time [s], force [N], pose and the text of one moment."""
