@@ -5,7 +5,9 @@ import math
 import time
 import unittest
 
+from ball import Ball
 from in_browser import READING, InBrowser, text
+from mock import Scene
 
 SHIFT, ALT = 8, 1
 
@@ -154,6 +156,16 @@ class Page(InBrowser):
         self.assertEqual(self.messages("open"), [{"type": "open", "scene": "other"}])
         self.tab.value("document.getElementById('reset').click()")
         self.wait_until(lambda: self.messages("reset"))
+
+    def test_a_scene_without_a_hand_is_shown(self):
+        self.mock.scene = Scene(Ball(), hand=False)
+        self.tab.wait_for(f"{text('holder')} === 'No handle to take in this scene'", 10)
+        frames = self.tab.value("palpateTest.frames()")
+        self.mock.scene.nodes = [[1.1 * one for one in node] for node in self.mock.scene.nodes]
+        self.tab.wait_for(f"palpateTest.frames() > {frames}", 10)
+        hidden = "['reading', 'force', 'take', 'settings'].map((id) => document.getElementById(id).hidden)"
+        self.assertEqual(self.tab.value(hidden), [True] * 4)
+        self.assertEqual(self.tab.errors, [])
 
     def test_lights_have_words(self):
         lights = ("Array.from(document.querySelectorAll('#lights li'), "

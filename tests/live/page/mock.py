@@ -30,8 +30,8 @@ TOOL_RADIUS_M, TICK_S = 0.012, 1e-3
 class Scene:
     """One ball, one tool, one hand; what the viewers did to them."""
 
-    def __init__(self, ball, free=False):
-        self.ball, self.free = ball, free
+    def __init__(self, ball, free=False, hand=True):
+        self.ball, self.free, self.hand = ball, free, hand
         self.tool_shape = sphere(TOOL_RADIUS_M, 16, 32)
         self.start = [0.0, -1.5 * ball.radius, 0.0]
         self.pose = [*self.start, 1.0, 0.0, 0.0, 0.0]
@@ -49,7 +49,7 @@ class Scene:
     def description(self):
         vertices, triangles = self.tool_shape
         most = 1.7 * self.ball.radius
-        return {"type": "scene", "protocol": 1, "version": "mock", "scene": "ball", "tick_s": TICK_S,
+        out = {"type": "scene", "protocol": 1, "version": "mock", "scene": "ball", "tick_s": TICK_S,
                 "scheme": "partitioned", "integrator": "none", "up": [0, 0, 1],
                 "bounds": {"min": [-self.ball.radius, -most, -self.ball.radius],
                            "max": [self.ball.radius] * 3},
@@ -62,11 +62,14 @@ class Scene:
                 "sliders": [{"key": "tool.coupling.stiffness_n_m", "label": "Coupling stiffness",
                              "unit": "N/m", "value": self.stiffness, "min": 10, "max": 3000,
                              "logarithmic": True}]}
+        return out if self.hand else {**out, "hands": [], "tools": [], "sliders": []}
 
     def geometry(self):
         vertices, triangles = self.tool_shape
-        body = (self.ball.geometry() + packed("f", itertools.chain.from_iterable(vertices)) +
-                packed("I", itertools.chain.from_iterable(triangles)))
+        body = self.ball.geometry()
+        if self.hand:
+            body += (packed("f", itertools.chain.from_iterable(vertices)) +
+                     packed("I", itertools.chain.from_iterable(triangles)))
         return struct.pack("<II", GEOMETRY, 8 + len(body)) + body
 
     def frame(self, time_s, since_s):
@@ -74,9 +77,11 @@ class Scene:
         strip = b"".join(packed("f", [-(samples - 1 - s) / 200, *self.force, 0.0, 0.0, 1e-3 * self.depth])
                          for s in range(samples))
         body = (struct.pack("<dI", time_s, samples) +
-                packed("f", itertools.chain.from_iterable(self.nodes)) + packed("f", self.tool) +
-                packed("f", [*self.pose, *self.force, 0.0, 0.0, 1e-3 * self.depth]) +
-                struct.pack("<I", 1 | (4 if self.depth > 0 else 0)) + strip)
+                packed("f", itertools.chain.from_iterable(self.nodes)))
+        if self.hand:
+            body += (packed("f", self.tool) +
+                     packed("f", [*self.pose, *self.force, 0.0, 0.0, 1e-3 * self.depth]) +
+                     struct.pack("<I", 1 | (4 if self.depth > 0 else 0)) + strip)
         return struct.pack("<II", FRAME, 8 + len(body)) + body
 
 

@@ -145,7 +145,7 @@ export function notice(level, text, seconds = level === "error" ? 0 : 8) {
 
 const HOLDER = {
   you: "You hold the handle", other: "Another viewer holds the handle", nobody: "Nobody holds the handle",
-  none: "The scene moves the handle",
+  none: "No handle to take in this scene",
 };
 
 export function showHolder(handle) {

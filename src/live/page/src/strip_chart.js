@@ -39,8 +39,9 @@ export class StripChart {
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
+  /// Begins anew; a scene without hands has one empty chart.
   reset(hands) {
-    this.hands = Array.from({ length: hands }, () => new Samples());
+    this.hands = Array.from({ length: Math.max(1, hands) }, () => new Samples());
     this.hand = 0;
     this.time_s = 0;
   }

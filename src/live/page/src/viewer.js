@@ -56,6 +56,7 @@ function setHands() {
   choice.replaceChildren(...scene.hands.map(({ name }, hand) =>
     new Option(name || `hand ${hand + 1}`, hand)));
   element("hand-choice").hidden = scene.hands.length < 2;
+  element("reading").hidden = element("force").hidden = scene.hands.length === 0;
   if (scene.hands.length > 0) chooseHand(Math.max(0, live));
 }
 
