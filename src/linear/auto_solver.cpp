@@ -114,6 +114,8 @@ class AutoSolver final : public dynamics::LinearSolver,
       nodes_ = pattern.block_rows();
     } else if (seen_ > 0.0) {
       choose(nodes_, seen_);
+    } else if (!mixed_) {
+      activate(last_);  // GMRES has solved an unsymmetric matrix in between
     }
     return room_ = mixed_ ? mixed_->step_matrix(pattern) : nullptr;
   }
@@ -167,6 +169,7 @@ class AutoSolver final : public dynamics::LinearSolver,
     return *made_[k];
   }
   void activate(std::size_t k) {
+    last_ = k;
     active_ = &made(k);
     mixed_ = dynamic_cast<dynamics::MixedPrecisionSolver*>(active_);
     allow_error(allowed_);
@@ -203,6 +206,7 @@ class AutoSolver final : public dynamics::LinearSolver,
   double allowed_ = 0.0;                             ///< admissible energy-norm error
   std::uint64_t values_version_ = 0;
   int nodes_ = -1;
+  std::size_t last_ = kTwoLevel;      ///< solver of symmetric matrices that was active last
   bool provisional_ = false;          ///< active_ is kProvisional, before the first choice
   double stiffness_ = 0.0;            ///< number by which active_ was chosen
   double seen_ = 0.0;                 ///< number of the last matrix if zero-row-sum, else 0

@@ -127,6 +127,26 @@ TEST_F(AutoOnZeroRowSum, ChoosesAnewForAnotherBody) {
   EXPECT_EQ(solver->counters().solves, 4);
 }
 
+// An unsymmetric matrix is solved by GMRES; zero-row-sum matrices after it are solved as before.
+TEST_F(AutoOnZeroRowSum, ReturnsToItsChoiceAfterAnUnsymmetricMatrix) {
+  for (const double h : {1e-4, 0.1}) {
+    solve(h);
+    solve(h);
+    const long single = made("pcg-single"), two_level = made("pcg-two-level");
+    BorderedMatrix whole;
+    VecX b, x;
+    beam.at(0.4, h, whole, b);
+    whole.symmetric = false;
+    ASSERT_EQ(solver->factor(whole), SolveStatus::kOk);
+    ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+    EXPECT_EQ(mixed(*solver).lagged_matrix(), nullptr) << "GMRES has none";
+    solve(h);
+    EXPECT_NE(mixed(*solver).lagged_matrix(), nullptr);
+    EXPECT_EQ(made("pcg-single"), single) << "none was made anew";
+    EXPECT_EQ(made("pcg-two-level"), two_level);
+  }
+}
+
 // Measurements of a zero-row-sum matrix are discarded when a whole matrix follows.
 TEST_F(AutoOnZeroRowSum, ForgetsWhatItSawWhenAWholeMatrixComes) {
   solve(1e-4);

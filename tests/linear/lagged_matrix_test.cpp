@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "dynamics/energy_tolerance.h"
 #include "linear/bent_beam.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
@@ -81,6 +82,29 @@ TEST(LaggedMatrix, SaysWhereItIsTooFar) {
     const VecX exact = direct_solution(A, b);
     EXPECT_LE(energy_norm(A, x - exact), 1e-6 * energy_norm(A, exact))
         << name << ": its own matrix is taken up as if nothing had been";
+  }
+}
+
+// An absolute tolerance saves iterations, and bounds the error.
+TEST(LaggedMatrix, AcceptsAnAbsoluteTolerance) {
+  for (const std::string name : {"pcg-single", "pcg-two-level", "auto"}) {
+    long iterations[2] = {};
+    for (const double allowed : {0.0, 1e-3}) {
+      BentBeam beam(16, 1e5);
+      const auto solver = solver_at(beam, name, 0.5, 2e-3, 1e-6);
+      BorderedMatrix A;
+      VecX b, x;
+      beam.at(0.51, 2e-3, A, b);
+      const VecX exact = direct_solution(A, b);
+      const double size = energy_norm(A, exact);
+      Known left(A, b);
+      dynamic_cast<EnergyTolerance&>(*solver).allow_error(allowed * size);
+      const long before = solver->counters().iterations;
+      ASSERT_EQ(mixed(*solver).solve_by_refinement(left, x), SolveStatus::kOk) << name;
+      iterations[allowed > 0.0] = solver->counters().iterations - before;
+      EXPECT_LE(energy_norm(A, x - exact), std::max(1e-6, allowed) * size) << name;
+    }
+    EXPECT_LT(iterations[1], iterations[0]) << name;
   }
 }
 

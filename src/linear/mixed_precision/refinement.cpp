@@ -52,12 +52,13 @@ SolveStatus Refinement::approach(dynamics::ResidualFunction& equations, int most
   const double by_copy = (1.0 - LaggedMatrixPolicy::kUnseen) * s_.rtol;
   double open = 0.0, energy = start.energy, change = start.change;
   SolveStatus status =
-      descend(energy, by_copy, open, [&](int first, int last) { s_.set_residual(first, last); });
+      descend(energy, by_copy, allowed_, open, [&](int first, int last) { s_.set_residual(first, last); });
   for (;;) {
     if (status != SolveStatus::kOk) return status;
     const double solution = s_.iteration.solution(),
                  correction = std::sqrt((change + solution - energy) / solution);
     if (residuals == 1) s_.correction = correction;
+    if (!(solution > 0.0)) break;  // both the right-hand side and the initial guess are zero
     if (open <= by_copy && !rounded_ && lag_.sure(correction)) break;
     if (residuals == most_residuals) return SolveStatus::kNotConverged;
     s_.add_correction();
@@ -67,17 +68,21 @@ SolveStatus Refinement::approach(dynamics::ResidualFunction& equations, int most
     double stale = 0.0;
     if (status = correct_lag(solution, stale, open); status != SolveStatus::kOk) return status;
     lag_.seen(stale, correction);
-    if (open <= s_.rtol) break;
+    if (open <= tolerance(solution)) break;
     if (!LaggedMatrixPolicy::converges(stale, correction)) return SolveStatus::kNotConverged;
     s_.add_correction();
     energy = solution;
     change = stale * stale * solution;
-    status = descend(energy, by_copy, open, [](int, int) {});
+    status = descend(energy, by_copy, allowed_, open, [](int, int) {});
   }
   s_.iteration.end();
   s_.put_solution(x.data(), true, true);
   s_.counters.residual_checks += residuals;
   return SolveStatus::kOk;
+}
+
+double Refinement::tolerance(double solution) const {
+  return std::max(s_.rtol, allowed_ / std::sqrt(solution));
 }
 
 void Refinement::evaluate_residual(dynamics::ResidualFunction& equations, VecX& x) {
@@ -108,7 +113,7 @@ SolveStatus Refinement::correct_lag(double solution, double& stale, double& open
   const int* node = s_.copy.order().node.data();
   float* r = s_.iteration.residual().data();
   double rest = 0.0;
-  const SolveStatus status = descend(0.0, kRoughly, rest, [&](int first, int last) {
+  const SolveStatus status = descend(0.0, kRoughly, 0.0, rest, [&](int first, int last) {
     for (int k = first; k < last; ++k)
       for (int axis = 0; axis < 3; ++axis) {
         const std::size_t at = 4 * static_cast<std::size_t>(k) + static_cast<std::size_t>(axis);
@@ -127,13 +132,15 @@ SolveStatus Refinement::correct_lag(double solution, double& stale, double& open
   return SolveStatus::kOk;
 }
 
-/// Iterates from the residual that is set until the error is below rtol of the solution, or the reduction
-/// reaches the limit of single precision.
+/// Iterates from the residual that is set until the error is below rtol of the solution or below `absolute`,
+/// or the reduction reaches the limit of single precision.
 /// @param start  As EnergyBound::begin.
 /// @param open  Out: remaining error relative to the solution.
 template <class Set>
-SolveStatus Refinement::descend(double start, double rtol, double& open, Set&& set_residual) {
+SolveStatus Refinement::descend(double start, double rtol, double absolute, double& open,
+                                Set&& set_residual) {
   s_.iteration.begin(start);
+  s_.iteration.allow(absolute * absolute);
   s_.iteration.set_floor(HUGE_VAL);
   s_.iteration.restart();
   double rho = s_.iteration.precondition(set_residual);

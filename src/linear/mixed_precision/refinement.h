@@ -35,6 +35,8 @@ class Refinement {
   void solved(double correction) { lag_.solved(correction); }
   /// Whether there is an initial guess for refinement with a rounded copy.
   bool can_correct() const { return s_.guess.count() > 0 && !s_.iteration.first(); }
+  /// Sets an absolute energy-norm error that is accepted whatever the relative tolerance.
+  void allow_error(double error) { allowed_ = error; }
   /// Solves A x = b for equations whose matrix is close to the copy, with which a solution was found before,
   /// or for the equations of a rounded copy. Adds all time except the residual's to solve_s. Result as for
   /// MixedPrecisionSolver::solve_by_refinement.
@@ -43,18 +45,21 @@ class Refinement {
  private:
   /// Iterates corrections until the error is within the tolerance.
   dynamics::SolveStatus approach(dynamics::ResidualFunction& equations, int most_residuals, VecX& x);
+  /// Returns the admissible error relative to a solution of this squared energy norm.
+  double tolerance(double solution) const;
   /// Evaluates residual_ = b - A x.
   void evaluate_residual(dynamics::ResidualFunction& equations, VecX& x);
   /// Sets the right-hand side of the copy's system, b = residual_ + Ao x.
   ProjectedGuess::Start begin_with_residual();
   /// Solves for a correction with the copy.
   template <class Set>
-  dynamics::SolveStatus descend(double start, double rtol, double& open, Set&& set_residual);
+  dynamics::SolveStatus descend(double start, double rtol, double absolute, double& open, Set&& set_residual);
   /// Measures and corrects the error due to the lagged matrix.
   dynamics::SolveStatus correct_lag(double solution, double& stale, double& open);
 
   SolveState& s_;
   LaggedMatrixPolicy lag_;
+  double allowed_ = 0.0;
   bool rounded_ = false, own_ = false;  ///< own_: the next equations are those of the copy
   VecX residual_;                       ///< last residual, in the equations' order
   Singles open_;                        ///< residual at the end of the previous iteration

@@ -158,6 +158,7 @@ class SinglePcg final : public dynamics::LinearSolver,
     if (delegated_ || matrix_ || (use_ != StepMatrixUse::kRefine && use_ != StepMatrixUse::kSolve)) return {};
     const long before = counters_.iterations;
     const bool own = use_ == StepMatrixUse::kRefine && !refined_;
+    refinement_.allow_error(allowed_);
     const std::optional<SolveStatus> status =
         own && !refinement_.can_correct() ? refine_from_nothing(residual, x) : refinement_.solve(residual, x);
     if (!own) return status;
@@ -269,7 +270,9 @@ class SinglePcg final : public dynamics::LinearSolver,
     equations.at(x, right_hand_side_);
     {
       const ScopedTimer timer(counters_.solve_s);
+      solve_.allow_error(allowed_);
       const SolveStatus status = solve_.solve(right_hand_side_.data(), x.data(), true);
+      solve_.allow_error(0.0);
       // still no guess: the right-hand side is zero, and so is the solution
       if (status != SolveStatus::kOk || !refinement_.can_correct()) return status;
     }
