@@ -1,13 +1,17 @@
 #!/usr/bin/env python3
 """Measures the single-rate scheme beside the partitioned one: the tables and the chart of docs/kilohertz.md.
 
-    benchmarks/kilohertz.py PROGRAM [error] [steps] [scale] [clock] [hand] [-o FOLDER]
+    benchmarks/kilohertz.py PROGRAM [error] [steps] [scale] [clock] [busy] [pairs] [hand] [passive]
+        [--seconds S] [--scenes NAME...] [-o FOLDER]
 
 error   error of the force on the hand against the monolithic solution, and CPU time, by scheme
 steps   time of one step by its parts, beside an exchange in every tick
 scale   time of one step against the number of tetrahedra, and its growth
 clock   runs in real time: lateness, work, skipped ticks
+busy    the same while another process keeps one processor busy
+pairs   time of one step of two bodies in contact
 hand    a simulated hand that holds the device: force above 30 Hz, by stiffness of the coupling
+passive largest stiffness of the coupling that returns no energy to that hand
 
 Without a name all are measured. Results are printed as tables in Markdown; FOLDER receives runs and chart.
 """
@@ -183,24 +187,56 @@ def scale(bench):
     print(f"growth exponent from {math.exp(sizes[2]):,.0f} tetrahedra on: {exponent:.2f}\n")
 
 
+def clock_row(bench, scene, threads, tick):
+    changes = [*SINGLE, f"integrator.threads={threads}", f"tool.tick_s={tick}",
+               "integrator.name=linearly-implicit-euler", "record.states=false"]
+    figures = bench.run(scene, changes, "--realtime", "--duration-s", str(bench.seconds))
+    t = figures["real_time"]
+    times, force, torque = forces(bench.last)
+    if not (numpy.isfinite(force).all() and numpy.isfinite(torque).all() and (numpy.diff(times) > 0).all()):
+        sys.exit(f"{scene}: a force is stale or not finite")
+    felt = figures.get("against_virtual_time", [{}])[0].get("force_error_rms_of_peak")
+    return [scene, f"{1e3 * tick:g} ms", str(threads), str(t["ticks_timed"]), str(t["skipped_ticks"]),
+            ", ".join(f"{1e3 * t[f'tick_late_{p}_s']:.2f}" for p in ("p50", "p99", "p99_9")),
+            ", ".join(f"{1e3 * t[f'tick_work_{p}_s']:.2f}" for p in ("p50", "p99", "p99_9")),
+            f"{1e3 * t['exchange_latency_p50_s']:.2f}", percent(felt)]
+
+
 def clock(bench):
+    rows = [clock_row(bench, scene, threads, tick)
+            for scene, threads, tick in [("press-ball", 1, 0.001),
+                                         ("touch-human", 2, 0.001), ("touch-human", 2, 0.002),
+                                         ("touch-head", 2, 0.001), ("touch-head", 2, 0.002)]
+            if not bench.scenes or scene in bench.scenes]
+    table(CLOCK_HEAD, rows)
+
+
+CLOCK_HEAD = ["scene", "tick", "threads", "ticks", "skipped", "lateness, median, 99 % and 99.9 % [ms]",
+              "work, median, 99 % and 99.9 % [ms]", "handle to force, median [ms]",
+              "force error of the skipped ticks, RMS of the peak"]
+
+
+def busy(bench):
+    spinning = subprocess.Popen([sys.executable, "-c", "while True: pass"])
+    try:
+        clock(bench)
+    finally:
+        spinning.kill()
+
+
+def pairs(bench):
     rows = []
-    for scene, threads, tick in [("press-ball", 1, 0.001),
-                                 ("touch-human", 2, 0.001), ("touch-human", 2, 0.002),
-                                 ("touch-head", 2, 0.001), ("touch-head", 2, 0.002)]:
-        changes = [*SINGLE, f"integrator.threads={threads}", f"tool.tick_s={tick}",
-                   "integrator.name=linearly-implicit-euler", "record.states=false"]
-        figures = bench.run(scene, changes, "--realtime", "--duration-s", "10")
-        t = figures["real_time"]
-        felt = figures.get("against_virtual_time", [{}])[0].get("force_error_rms_of_peak")
-        rows.append([scene, f"{1e3 * tick:g} ms", str(threads), str(t["ticks_timed"]),
-                     str(t["skipped_ticks"]),
-                     f"{1e3 * t['tick_late_p50_s']:.2f}, {1e3 * t['tick_late_p99_s']:.2f}",
-                     f"{1e3 * t['tick_work_p50_s']:.2f}, {1e3 * t['tick_work_p99_s']:.2f}",
-                     f"{1e3 * t['exchange_latency_p50_s']:.2f}", percent(felt)])
-    table(["scene", "tick", "threads", "ticks", "skipped", "lateness, median and 99 % [ms]",
-           "work, median and 99 % [ms]", "handle to force, median [ms]",
-           "force error of the skipped ticks, RMS of the peak"], rows)
+    for scene, step in ("two-pumpkins", 0.004), ("two-heads", 0.004), ("gears", 0.01):
+        for threads in 1, 2:
+            figures = bench.best(scene, [f"integrator.step_s={step}", f"integrator.threads={threads}",
+                                         "exchange.exchange_period_s=0.02", "exchange.contact_refresh_s=0.02",
+                                         "integrator.linear_rtol=1e-2", "record.states=false"])
+            t, n = figures["timings"], figures["counts"]["steps"]
+            rows.append([scene, f"{figures['sizes']['tetrahedra']:,}", f"{1e3 * step:g} ms", str(threads),
+                         *(f"{1e3 * t[key] / n:.2f}" for key in ("contact_query_s", "force_s", "tangent_s",
+                                                                 "factor_s", "solve_s", "loop_wall_s"))])
+    table(["scene", "tetrahedra", "step", "threads", "query", "forces", "tangent", "packing", "solve",
+           "whole step [ms]"], rows)
 
 
 def hand(bench):
@@ -217,16 +253,54 @@ def hand(bench):
     table(["coupling [N/m]", "points", "frozen", "single rate, Euler", "single rate, BDF2"], rows)
 
 
+def returned_energy(bench, own, stiffness):
+    """Returns the least energy at the device's port over the run [J]: negative where the hand gets more than
+    it gave."""
+    changes = [*own, "device.type=hand", f"tool.coupling.stiffness_n_m={stiffness:g}",
+               f"tool.coupling.damping_n_s_m={math.sqrt(0.1 * stiffness):.3g}",  # half of critical
+               "device.max_force_n=1000", "record.states=false"]
+    figures = bench.run("touch-human", changes, "--passivity", "observe")
+    return figures["hands"][0]["port_least_energy_j"]
+
+
+def passive(bench):
+    """Bisects for the largest passive stiffness between 10 N/m and 1 MN/m, to 5 %."""
+    rows = []
+    for name, own in [("partitioned, points, 10 ms", []),
+                      ("partitioned, frozen, 10 ms", ["exchange.linearisation=frozen"]),
+                      ("partitioned, frozen, 1 ms", SCHEMES["partitioned, frozen, 1 ms"]),
+                      ("single rate, Euler", SINGLE), ("single rate, BDF2", BDF2)]:
+        low, high = 10.0, 1e6
+        if returned_energy(bench, own, low) < -PASSIVE_J:
+            rows.append([name, "none"])
+            continue
+        while high > 1.05 * low:
+            middle = math.sqrt(low * high)
+            if returned_energy(bench, own, middle) < -PASSIVE_J:
+                high = middle
+            else:
+                low = middle
+        rows.append([name, f"{low:.3g}"])
+    table(["scheme", "largest passive stiffness [N/m]"], rows)
+
+
+PASSIVE_J = 1e-6  # energy that a loop may return and count as passive
+
+
 def main():
-    parts = {"error": error, "steps": steps, "scale": scale, "clock": clock, "hand": hand}
+    parts = {"error": error, "steps": steps, "scale": scale, "clock": clock, "busy": busy, "pairs": pairs,
+             "hand": hand, "passive": passive}
     arguments = argparse.ArgumentParser(description=__doc__,
                                         formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("program")
     arguments.add_argument("what", nargs="*", choices=[[], *parts], default=[])
+    arguments.add_argument("--seconds", type=float, default=10, help="duration of the runs in real time")
+    arguments.add_argument("--scenes", nargs="*", default=[], help="scenes of the runs in real time")
     arguments.add_argument("-o", "--output", type=Path, default=Path("out/kilohertz"))
     chosen = arguments.parse_args()
     chosen.output.mkdir(parents=True, exist_ok=True)
     bench = Bench(chosen.program, chosen.output)
+    bench.seconds, bench.scenes = chosen.seconds, chosen.scenes
     for name in chosen.what or parts:
         parts[name](bench)
 
