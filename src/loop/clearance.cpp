@@ -222,6 +222,7 @@ bool starts_enclosed(const World& world, std::size_t contact) {
 }
 
 std::string direction_text(const Vec3& direction) {
+  // rounding, such as -3.7e-16, is 0
   const auto clean = [&](int axis) { return std::abs(direction[axis]) < 1e-9 ? 0.0 : direction[axis]; };
   return fmt::format("({:.3g}, {:.3g}, {:.3g})", clean(0), clean(1), clean(2));
 }

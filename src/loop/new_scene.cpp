@@ -78,16 +78,65 @@ void choose_held_part(const Body& body, Numbers& n) {
   }
 }
 
-/// Chooses the line on which the tool comes down: through the centre of volume, or, where the surface is
-/// farther from it than the radius, through the nearest vertex, so that the tool cannot miss.
-void choose_line(const Points& surface, Numbers& n) {
-  double nearest = HUGE_VAL;
-  Vec3 vertex = n.centre;
-  for (Eigen::Index v = 0; v < surface.cols(); ++v) {
-    const double d = (surface.col(v) - n.centre).head<2>().norm();
-    if (d < nearest) nearest = d, vertex = surface.col(v);
+/// Highest point of a surface on a vertical line, and the upward part of the unit normal there.
+struct Top {
+  double z = -HUGE_VAL, up = 0.0;
+};
+
+Vec3 area_vector(const TriMesh& surface, Eigen::Index face) {
+  const auto corner = [&](int k) { return Vec3(surface.vertices.col(surface.faces(k, face))); };
+  return (corner(1) - corner(0)).cross(corner(2) - corner(0));
+}
+
+/// Returns the top of the surface at (x, y); z is -infinity where the line misses it.
+Top top_at(const TriMesh& surface, const Eigen::Vector2d& at) {
+  Top out;
+  for (Eigen::Index f = 0; f < surface.faces.cols(); ++f) {
+    const auto corner = [&](int k) { return surface.vertices.col(surface.faces(k, f)); };
+    const Eigen::Vector2d a = corner(0).head<2>(), u = corner(1).head<2>() - a, v = corner(2).head<2>() - a,
+                          w = at - a;
+    const double det = u.x() * v.y() - u.y() * v.x();
+    if (!(det > 0.0)) continue;  // faces down, or is vertical
+    const double s = (w.x() * v.y() - w.y() * v.x()) / det, t = (u.x() * w.y() - u.y() * w.x()) / det;
+    if (s < 0.0 || t < 0.0 || s + t > 1.0) continue;
+    const double z = (1.0 - s - t) * corner(0).z() + s * corner(1).z() + t * corner(2).z();
+    if (z > out.z) out = {z, area_vector(surface, f).normalized().z()};
   }
-  const Vec3& line = nearest < 0.9 * n.radius ? n.centre : vertex;
+  return out;
+}
+
+/// Returns how well the surface supports a tool of that radius at (x, y): 0 where the line misses it, 5 where
+/// its top faces up, and lies at a similar height in four directions.
+int support_at(const TriMesh& surface, const Eigen::Vector2d& at, double radius) {
+  const Top top = top_at(surface, at);
+  if (!(top.up > 0.0)) return 0;
+  int out = top.up > 0.7 ? 1 : 0;
+  for (const Eigen::Vector2d& side :
+       {Eigen::Vector2d(1, 0), Eigen::Vector2d(-1, 0), Eigen::Vector2d(0, 1), Eigen::Vector2d(0, -1)})
+    out += std::abs(top_at(surface, at + 0.7 * radius * side).z - top.z) < 0.7 * radius;
+  return out;
+}
+
+/// Chooses the vertical line on which the tool comes down: through the centre of volume where the surface
+/// supports it, otherwise through the middle of the face nearest to that line which does, so that the tool
+/// does not glance off an edge.
+void choose_line(const TriMesh& surface, Numbers& n) {
+  constexpr std::size_t kMostTried = 300;
+  std::vector<Eigen::Vector2d> tried;
+  for (Eigen::Index f = 0; f < surface.faces.cols(); ++f)
+    if (const Vec3 area = area_vector(surface, f); area.z() > 0.7 * area.norm())
+      tried.emplace_back(surface.vertices(Eigen::all, surface.faces.col(f)).rowwise().mean().head<2>());
+  const Eigen::Vector2d centre = n.centre.head<2>();
+  std::stable_sort(tried.begin(), tried.end(), [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return (a - centre).norm() < (b - centre).norm();
+  });
+  tried.insert(tried.begin(), centre);
+  const std::size_t stride = 1 + tried.size() / kMostTried;
+  Eigen::Vector2d line = centre;
+  int best = -1;
+  for (std::size_t i = 0; i < tried.size() && best < 5; i += stride)
+    if (const int support = support_at(surface, tried[i], n.radius); support > best)
+      best = support, line = tried[i];
   const double unit = 1e-3 * rounded(n.radius, 1);
   n.above = unit * (Vec3(line.x(), line.y(), n.high.z() + 1.5 * n.radius) / unit).array().round().matrix();
 }
@@ -119,7 +168,7 @@ Numbers numbers_of(const NewScene& choice, const Body& body) {
   n.coupling = rounded(std::min(10.0 * 2.0 * n.stiff * n.patch, *device_figures().max_stiffness), 2);
   n.coupling_damping = rounded(0.9 * 2.0 * std::sqrt(n.coupling * n.tool_mass), 2);
   n.travel = rounded(n.depth + n.force / n.coupling, 3);
-  choose_line(surface, n);
+  choose_line({surface, body.surface_faces()}, n);
   return n;
 }
 
@@ -192,7 +241,7 @@ std::string tool_text(const NewScene& c, const Numbers& n) {
                turning = rounded(n.coupling * n.radius * n.radius, 2);
   return "\n" +
          comment(
-             "A round tool comes down on the middle of the body. start = \"touching\" moves it from "
+             "A round tool comes down near the middle of the body. start = \"touching\" moves it from "
              "position_m "
              "along start_direction until it touches, and the keyframes below with it.") +
          "[tool]\nshape = \"sphere\"\n" +
@@ -200,7 +249,7 @@ std::string tool_text(const NewScene& c, const Numbers& n) {
               c.tool_radius > 0.0 ? "r, as requested"
                                   : "r = max(V^(1/3)/8, 1.5 h): does not sink in between elements") +
          line("mass_kg", n.tool_mass, "m, a tenth of the body, 10 to 50 g: the hand does not feel it swing") +
-         line("position_m", triple(n.above), "above the middle of the body") +
+         line("position_m", triple(n.above), "above a flat place near the middle of the body") +
          "start = \"touching\"\nstart_direction = [0.0, 0.0, -1.0]\n\n" +
          comment("Spring and damper between hand and tool.") + "[tool.coupling]\n" +
          line("stiffness_n_m", n.coupling,

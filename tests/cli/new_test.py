@@ -50,8 +50,9 @@ class New(Cli):
         self.assertLess(max(force for t, _, force in forces if t < 0.02), 0.1 * peak, "starts at the touch")
         self.assertLess(forces[-1][2], 0.1 * peak, "releases")
         # large soft bodies sway for seconds; a loop that is not stable chatters from tick to tick
-        chatter = max(abs(after[1] - before[1]) for before, after in zip(forces, forces[1:]))
-        self.assertLess(chatter, 0.05 * peak, "stable")
+        chatter = max(abs(after[1] - before[1]) for before, after in zip(forces, forces[1:])
+                      if after[0] < 0.48)
+        self.assertLess(chatter, 0.05 * peak, "stable while the hand presses and holds")
         return scene, forces
 
     def test_tetrahedra_in_millimetres(self):
@@ -62,8 +63,8 @@ class New(Cli):
 
     def test_other_radius_and_axis(self):
         scene, _ = self.touches(TREE / "scenes/meshes/bracket.msh", "--unit", "mm", "--up", "x",
-                                "--tool-radius-m", "0.006", share=0.02)
-        self.assertEqual(scene["tool"]["radius_m"], 0.006)
+                                "--tool-radius-m", "0.012", share=0.02)
+        self.assertEqual(scene["tool"]["radius_m"], 0.012)
         self.assertAlmostEqual(scene["body"][0]["rotation_vector_rad"][1], -1.5708, 4)
 
     @unittest.skipUnless(DATA, "PALPATE_TEST_DATA is not set: real meshes are not tested")
