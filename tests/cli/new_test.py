@@ -69,7 +69,8 @@ class New(Cli):
 
     @unittest.skipUnless(DATA, "PALPATE_TEST_DATA is not set: real meshes are not tested")
     def test_real_tetrahedra(self):
-        for name, options in {"sphere1K.msh": [], "bar-2523.msh": ["--unit", "cm"], "cow_head.msh": []}.items():
+        meshes = {"sphere1K.msh": [], "bar-2523.msh": ["--unit", "cm"], "cow_head.msh": []}
+        for name, options in meshes.items():
             with self.subTest(name):
                 self.touches(Path(DATA) / name, *options, "--force", share=0.05)
 
