@@ -170,9 +170,10 @@ int make_new(const NewArguments& a) {
       "tool: radius {:.3g} mm, touches the body at ({:.4g}, {:.4g}, {:.4g}) mm\n"
       "written: {}\nnext: palpate run {} --picture --report\n",
       1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z(),
-      a.unit.empty() ? " (the file's numbers taken as metres; --unit mm if not)" : "", body.masses.sum(),
-      a.material, body.report.nodes, body.report.elements, 1e3 * ready->description.tool->radius_m,
-      1e3 * placed.touch_m.x(), 1e3 * placed.touch_m.y(), 1e3 * placed.touch_m.z(), output, output);
+      a.unit.empty() && fs::exists(a.mesh) ? " (the file's numbers taken as metres; --unit mm if not)" : "",
+      body.masses.sum(), a.material, body.report.nodes, body.report.elements,
+      1e3 * ready->description.tool->radius_m, 1e3 * placed.touch_m.x(), 1e3 * placed.touch_m.y(),
+      1e3 * placed.touch_m.z(), output, output);
   return 0;
 }
 

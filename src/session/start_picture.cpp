@@ -100,7 +100,8 @@ void draw_start(loop::World& world, const std::string& path) {
     add_box(box_of(scene.surfaces[i].points), 0.002 * size, scene, labels);
   }
   add_attachments(world, 0.015 * size, scene);
-  if (!all.isEmpty()) add_axes(all.min() - 0.05 * size * Vec3::Ones(), 0.12 * size, scene, labels);
+  // beside the objects, and above a ground on which they stand
+  if (!all.isEmpty()) add_axes(all.min() + size * Vec3(-0.05, -0.05, 0.01), 0.12 * size, scene, labels);
   add_obstacles(scene, world, view);
   scene.title = fmt::format("{} at its start", world.description.name);
   scene.subtitle = "sizes of the bounding boxes; axes of the world";
