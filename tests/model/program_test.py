@@ -272,7 +272,8 @@ class Program(unittest.TestCase):
         done = run(*make)
         self.assertEqual(done.returncode, 1)
         self.assertEqual(done.stderr, "palpate: error: large.obj: the body is 30 m large: is this intended? "
-                                      "If so, use --scale 1; for a file in millimetres, use --scale 0.001\n")
+                                      "If so, use --scale 1; for a file in millimetres, use --scale 0.001 or "
+                                      "--unit mm\n")
         for answer, status in [("y\n", 0), ("n\n", 1), ("\n", 1)]:
             asked = Terminal(*make)
             self.assertTrue(
