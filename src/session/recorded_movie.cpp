@@ -1,5 +1,6 @@
 #include "session/recorded_movie.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -10,6 +11,8 @@
 #include "palpate/store/run_file.h"
 #include "session/movie_file.h"
 #include "session/movie_frames.h"
+#include "session/shade_values.h"
+#include "store/summary.h"
 
 namespace palpate::session {
 namespace {
@@ -77,16 +80,35 @@ double between(const std::vector<double>& times, double fps, double slow, const 
   return static_cast<double>(std::max(1L, std::lround(requested / state))) * state;
 }
 
+/// Returns the largest value that pictures of the run show; 0 if it had none of this shade.
+double largest_value_of(const std::filesystem::path& folder, const std::string& shade) {
+  const std::filesystem::path file = folder / "summary.json";
+  if (!std::filesystem::exists(file)) return 0.0;
+  store::Summary summary = store::read_summary(file.string());
+  std::string of;
+  double largest = 0.0;
+  for (const auto& [name, value] : summary.section("pictures").values) {
+    if (const auto* text = std::get_if<std::string>(&value); text && name == "shade") of = *text;
+    if (const auto* number = std::get_if<double>(&value); number && name == "largest_value")
+      largest = *number;
+  }
+  return of == shade ? largest : 0.0;
+}
+
 /// Adds each state after the ticks up to its time, so that the handle has the pose of the hand at that time.
-void show(MovieFrames& frames, const States& states, int steps, Shade shade,
-          const std::vector<loop::TickRecord>& ticks, const Callbacks& callbacks) {
+/// @return the largest value of all states, between the frames, too
+double show(MovieFrames& frames, const loop::World& world, const States& states, int steps, Shade shade,
+            const std::vector<loop::TickRecord>& ticks, const Callbacks& callbacks) {
+  double largest = 0.0;
   auto tick = ticks.begin();
   for (int step = 0; step < steps && !callbacks.stopped(); ++step) {
     WorldSnapshot snapshot = states.at(step, shade);
     for (; tick != ticks.end() && tick->time <= snapshot.time + 1e-9; ++tick) frames.tick(*tick);
+    largest = std::max(largest, largest_value(world, snapshot, shade));
     frames.show(std::move(snapshot));
   }
   for (; tick != ticks.end(); ++tick) frames.tick(*tick);
+  return largest;
 }
 
 /// Returns the ticks of the first hand; none if they were not recorded.
@@ -124,9 +146,11 @@ DrawnFrames draw_recorded_movie(const MovieOptions& options, const SceneReader& 
   const auto world = loop::assemble(description);
   const States states(states_file, *world, reader);
   MovieFrames frames(*world, folder.string(), shade, out.between_s, reader.times_s().back(), size);
-  show(frames, states, reader.steps(), shade, ticks_of(description, folder), callbacks);
+  const double of_states =
+      show(frames, *world, states, reader.steps(), shade, ticks_of(description, folder), callbacks);
+  const double of_run = largest_value_of(folder, options.shade);
   const std::unique_ptr<FrameSink> sink = make_movie(out.movie, out.shown_s);
-  frames.save(*world, {sink.get()}, callbacks, missing);
+  frames.save(*world, {sink.get()}, callbacks, missing, of_run > 0.0 ? of_run : of_states);
   out.count = frames.count();
   out.in_movie = sink->written();
   out.stopped = callbacks.stopped();

@@ -38,6 +38,9 @@ struct RunOutput {
   std::optional<compare::AgainstReference> against;  ///< Set if the run was compared
   /// Set if ticks of a single-rate run in real time were skipped
   std::optional<compare::AgainstReference> against_every_tick;
+  /// Largest value that pictures of the run show, the end of their range before it is rounded; empty without
+  /// pictures
+  std::optional<double> largest_value;
   std::optional<DrawnFrames> frames;  ///< Set if frames were requested
   MissingOutputs missing;
 

@@ -49,6 +49,11 @@ std::vector<loop::Observer*> RunPictures::observers() {
   return out;
 }
 
+std::optional<double> RunPictures::largest_value() const {
+  if (!options_.picture && !frames_) return {};
+  return largest_.value();
+}
+
 void RunPictures::save_pictures(const loop::World& world, MissingOutputs& missing) {
   if (options_.picture) {
     const std::string path = (std::filesystem::path(folder_) / "picture.png").string();

@@ -33,6 +33,9 @@ class RunPictures {
 
   std::vector<loop::Observer*> observers();
 
+  /// Returns the largest value of the run so far; empty if no picture shows it.
+  std::optional<double> largest_value() const;
+
   /// Saves picture.png and the pictures of the contact.
   void save_pictures(const loop::World& world, MissingOutputs& missing);
 

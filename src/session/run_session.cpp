@@ -196,6 +196,7 @@ void RunSession::compare_with_references(const Callbacks& callbacks) {
 
 void RunSession::write_results() {
   if (ran_.folder.empty()) return;
+  ran_.largest_value = pictures_->largest_value();
   write_summary(*world_, ran_, options_);
   if (ran_.is_complete()) remove_checkpoint(ran_.folder);
   if (ran_.result.real_time) write_clock(*ran_.result.real_time, ran_.folder);

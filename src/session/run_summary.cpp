@@ -13,8 +13,10 @@
 namespace palpate::session {
 namespace {
 
-/// Adds what the pictures of the page share with those of the run: the view, and the free bodies.
-void add_pictures(store::Summary& summary, const scene::Description& d) {
+/// Adds what pictures and movies made later share with those of the run: the view, the free bodies, and the
+/// range of colours.
+void add_pictures(store::Summary& summary, const scene::Description& d, const RunOutput& ran,
+                  const Options& options) {
   const auto list = [](const Vec3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
   store::SummaryFields fields;
   if (const auto free = free_bodies(d); !free.empty()) fields.emplace_back("free_bodies", free);
@@ -22,6 +24,10 @@ void add_pictures(store::Summary& summary, const scene::Description& d) {
   if (d.view.target_m) fields.emplace_back("view_target_m", list(*d.view.target_m));
   if (d.view.zoom != 1.0) fields.emplace_back("view_zoom", d.view.zoom);
   if (d.view.up != Vec3::UnitZ()) fields.emplace_back("view_up", list(d.view.up));
+  if (ran.largest_value) {
+    fields.emplace_back("shade", options.shade);
+    fields.emplace_back("largest_value", *ran.largest_value);
+  }
   if (!fields.empty()) summary.section("pictures").values = fields;
 }
 
@@ -36,7 +42,7 @@ store::Summary summary_of(const loop::World& world, const RunOutput& ran, const 
     compare::add_to_summary(summary, world.description, *ran.against_every_tick, "virtual_time");
   if (const double every_s = options.checkpoint_every_s; every_s > 0.0)
     loop::add_checkpoints(summary, ran.checkpoints, every_s);
-  add_pictures(summary, world.description);
+  add_pictures(summary, world.description, ran, options);
   summary.command = command_of(options);
   summary.overrides = options.scene.overrides;
   summary.remarks = log::warnings();

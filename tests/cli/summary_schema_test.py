@@ -160,7 +160,7 @@ class Schema(Cli):
         self.assertEqual(error["hand"], "tool")
         self.assertLess(error["force_error_rms_of_peak"], 0.1)
         take("run", "press-ball", "--duration-s", "0.05", "--checkpoint-every", "0.02")
-        figures = take("run", "one-tet", "--duration-s", "0.05", "--view", "left", "--zoom", "2",
+        figures = take("run", "one-tet", "--duration-s", "0.05", "--view", "left", "--zoom", "2", "--picture",
                        *change("view.target_m=[0.1, 0, 0]", "view.up=[0, 1, 0]"))
         self.assertEqual(figures["pictures"]["view_direction"], [-1, 0, 0])
         take("stability", "--haptic", "press-ball")

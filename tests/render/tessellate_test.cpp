@@ -122,7 +122,7 @@ TEST(Tessellated, ACreaseStaysStraight) {
       EXPECT_LE(std::abs(c.position[0]), 1.0 + 1e-6);
     } else if (c.position[2] > 0.52) {  // the strips at the sharp edges are flat there
       ++on_round;
-      EXPECT_NEAR(reach, 1.0, 0.008) << "chords lie up to 0.034 inside";
+      EXPECT_NEAR(reach, 1.0, 0.015) << "chords lie up to 0.034 inside";
     }
     EXPECT_LE(std::abs(c.position[1]), 0.5 + 1e-6);
   }

@@ -11,7 +11,10 @@ namespace {
 
 scene::ViewSpec parsed_view(const std::string& lines) {
   const std::string view = "[scene]\nname = \"s\"\nduration_s = 1.0\n[view]\n" + lines;
-  return loop::parse(view + "\n[[body]]\nname = \"b\"\nmesh = { generator = \"ball\" }\n", "s.toml").view;
+  const std::string body =
+      "\n[[body]]\nname = \"b\"\nyoungs_modulus_pa = 1e4\nmesh = { generator = \"ball\", radius_m = 0.03, "
+      "element_size_m = 0.01 }\n";
+  return loop::parse(view + body, "s.toml").view;
 }
 
 std::string refused_view(const std::string& lines) {
