@@ -8,7 +8,7 @@ namespace palpate {
 Team::Team(int size) : size_(size) { PALPATE_CHECK(size >= 1, "a team of {}", size); }
 
 void Team::barrier() {
-  if (size() == 1) return;
+  if (size_ == 1) return;
   const std::uint32_t phase = phase_.load(std::memory_order_acquire);
   if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == static_cast<std::uint32_t>(size_)) {
     arrived_.store(0, std::memory_order_relaxed);
@@ -20,7 +20,6 @@ void Team::barrier() {
     if (phase_.load(std::memory_order_acquire) != phase) return;
     spin_once();
   }
-  workers::count_long_wait();
   while (phase_.load(std::memory_order_acquire) == phase) phase_.wait(phase, std::memory_order_acquire);
 }
 

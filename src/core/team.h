@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "core/late_helpers.h"
 #include "palpate/core/workers.h"
 
 namespace palpate {
@@ -18,18 +17,14 @@ class Team {
   explicit Team(int size);
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
-  /// Returns the number of threads that run() uses: 1 where the calling thread works alone
-  /// (late_helpers.h).
-  int size() const { return workers::alone() ? 1 : size_; }
-  /// Returns the largest number of threads that run() uses.
-  int most() const { return size_; }
+  int size() const { return size_; }
 
   /// Calls work(k) for k = 0 ... size() - 1, one thread each, including the caller; returns when all have
   /// returned.  Allocates nothing once the pool has its threads.
   template <class Work>
   void run(Work&& work) {
     using W = std::remove_reference_t<Work>;
-    if (size() == 1) return static_cast<void>(work(0));
+    if (size_ == 1) return static_cast<void>(work(0));
     workers::run_together(
         size_, [](void* w, int k, int) { (*static_cast<W*>(w))(k); },
         const_cast<std::remove_const_t<W>*>(&work));

@@ -10,7 +10,6 @@
 #include <thread>
 #include <vector>
 
-#include "core/late_helpers.h"
 #include "core/spin.h"
 #include "palpate/core/error.h"
 
@@ -21,8 +20,6 @@ constexpr int kMost = 256;  ///< Threads.
 
 thread_local int t_count = 0;         ///< Value of the innermost Count or of the running loop; 0 for neither.
 thread_local bool t_in_loop = false;  ///< This thread runs a task.
-thread_local bool t_alone = false;    ///< This thread is in a scope Alone.
-thread_local long t_long_waits = 0;
 
 // The word `ticket_` packs the loop's number (24 bits), its number of tasks and the next task (20 bits each).
 // A thread takes a task by replacing the word by its successor (compare and exchange): when that succeeds,
@@ -85,12 +82,10 @@ class Pool {
     for (int spins = 0;; ++spins) {
       const int done = done_.load();
       if (done == tasks) return;
-      if (spins < kSpins) {
+      if (spins < kSpins)
         spin_once();
-        continue;
-      }
-      if (spins == kSpins) ++t_long_waits;
-      done_.wait(done);
+      else
+        done_.wait(done);
     }
   }
 
@@ -180,22 +175,13 @@ void set_count(int count) {
   check_count(count);
   g_count = count;
 }
-int count() {
-  if (t_alone) return 1;
-  return t_count > 0 ? t_count : g_count.load(std::memory_order_relaxed);
-}
+int count() { return t_count > 0 ? t_count : g_count.load(std::memory_order_relaxed); }
 void run(int tasks, Task task, void* context) { pool().run(tasks, task, context); }
 void run_together(int threads, Task task, void* context) { pool().run_together(threads, task, context); }
 long tasks_of(int worker) {
   PALPATE_CHECK(worker >= 0 && worker < kMost, "thread {}", worker);
   return pool().tasks_of(worker);
 }
-
-long long_waits() { return t_long_waits; }
-void count_long_wait() { ++t_long_waits; }
-Alone::Alone() { t_alone = true; }
-Alone::~Alone() { t_alone = false; }
-bool alone() { return t_alone; }
 
 Count::Count(int count) : outside_(t_count) {
   check_count(count);

@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "palpate/core/workers.h"
+#include "core/team.h"
 
 namespace palpate::loop {
 namespace {
@@ -93,19 +93,12 @@ void release_memory() { munlockall(); }
 // stay as they are.
 void RealTimeClaim::schedule_helpers(int policy, const sched_param& parameters) const {
   if (threads_ < 2) return;
-  struct Context {
-    pthread_t caller;
-    int policy;
-    const sched_param& parameters;
-  } context{pthread_self(), policy, parameters};
-  workers::run_together(
-      threads_,
-      [](void* of, int, int) {
-        const Context& c = *static_cast<Context*>(of);
-        if (!pthread_equal(pthread_self(), c.caller))
-          pthread_setschedparam(pthread_self(), c.policy, &c.parameters);
-      },
-      &context);
+  const pthread_t caller = pthread_self();
+  Team team(threads_);
+  team.run([&](int) {
+    if (!pthread_equal(pthread_self(), caller)) pthread_setschedparam(pthread_self(), policy, &parameters);
+    team.barrier();  // each thread takes one
+  });
 }
 
 RealTimeClaim::RealTimeClaim(RealTimeResult& out, int threads) : threads_(threads) {

@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <optional>
 #include <utility>
 #include <vector>
 
-#include "core/late_helpers.h"
-#include "helper_watch.h"
 #include "palpate/device/limiter.h"
 #include "real_time_run.h"
 #include "real_time_thread.h"
@@ -86,15 +83,11 @@ class SingleRateRealTime {
 
   void tick_by_the_clock() {
     std::int64_t woke_before = start_ns_;
-    HelperWatch helpers;
     TickPace pace(tick_ns_, std::max(1L, kStall / tick_ns_));
     for (long done = 0; done < count_;) {
       const long next = std::min(count_, done + pace.stride());
       const bool paused = hold_while_paused();
       sleep_until_ns(start_ns_ + next * tick_ns_);
-      std::optional<workers::Alone> alone;
-      if (helpers.alone()) alone.emplace();
-      const long waits = workers::long_waits();
       result_.stopped = options_.stop && options_.stop->load(std::memory_order_relaxed);
       if (result_.stopped) return;
       const std::int64_t woke = now_ns(), late = woke - start_ns_ - next * tick_ns_;
@@ -112,7 +105,6 @@ class SingleRateRealTime {
       const double now = ticks_.time_of(done);
       if (closes) bodies_.close_period(now);
       if (done < count_) ticks_.query_if_due(now, ticks_.time_of((done / per_period + 1) * per_period));
-      helpers.end(workers::long_waits() - waits);
       pace.end(now_ns() - woke);
     }
   }

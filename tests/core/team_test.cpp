@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <chrono>
 #include <thread>
 #include <vector>
 
@@ -26,47 +25,6 @@ TEST(Team, WorksTogetherAgainAndAgain) {
     for (const long sum : sums) EXPECT_EQ(sum, 200 * 201 / 2 * size * (size + 1) / 2);
   }
   EXPECT_THROW(Team(0), InternalError);
-}
-
-TEST(Team, IsOfOneInAScopeAlone) {
-  const workers::Count count(2);
-  Team team(2);
-  long slots = 0;
-  const auto add = [&](int k) {
-    slots += 1 + k;
-    team.barrier();
-  };
-  {
-    const workers::Alone alone;
-    EXPECT_EQ(team.size(), 1);
-    EXPECT_EQ(team.most(), 2);
-    EXPECT_EQ(workers::count(), 1);
-    team.run(add);
-    EXPECT_EQ(slots, 1);
-  }
-  EXPECT_EQ(team.size(), 2);
-  EXPECT_EQ(workers::count(), 2);
-}
-
-// A helper that is far behind is noticed by the thread that waits for it.
-TEST(Team, CountsWaitsBeyondSpinning) {
-  Team team(2);
-  const auto behind = [&](int k) {
-    if (k == 1) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    team.barrier();
-  };
-  long before = workers::long_waits();
-  team.run(behind);
-  const long in_barrier = workers::long_waits() - before;
-  EXPECT_GE(in_barrier, 1);
-  before = workers::long_waits();
-  workers::run_together(
-      2,
-      [](void*, int k, int) {
-        if (k == 1) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      },
-      nullptr);
-  EXPECT_LE(workers::long_waits() - before, 1);
 }
 
 // Two callers that also run loops: one pool serves all of them, one after the other.

@@ -1,12 +1,10 @@
-// Ticks per step of the single-rate scheme in real time, on a simulated clock, and its number of threads.
+// Ticks per step of the single-rate scheme in real time, on a simulated clock.
 #include "loop/tick_pace.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <functional>
-
-#include "loop/helper_watch.h"
 
 namespace {
 
@@ -86,25 +84,6 @@ TEST(TickPace, KeepsToTheLargestNumberOfTicks) {
   TickPace pace(kTick, 3);
   run(pace, 1000, [](long, bool) { return 20 * kTick; });
   EXPECT_EQ(pace.stride(), 3);
-}
-
-TEST(HelperWatch, WorksAloneForLongerWhereHelpersStayAway) {
-  using palpate::loop::HelperWatch;
-  HelperWatch watch;
-  for (int i = 0; i < 1000; ++i) watch.end(HelperWatch::kMostWaits);
-  EXPECT_FALSE(watch.alone());
-  const auto steps_alone = [&] {
-    watch.end(HelperWatch::kMostWaits + 1);
-    long steps = 0;
-    for (; watch.alone(); ++steps) watch.end(0);
-    return steps;
-  };
-  EXPECT_EQ(steps_alone(), HelperWatch::kAlone);
-  EXPECT_EQ(steps_alone(), 2 * HelperWatch::kAlone);
-  for (int i = 0; i < 10; ++i) steps_alone();
-  EXPECT_EQ(steps_alone(), HelperWatch::kLongest);
-  for (long i = 0; i < HelperWatch::kAlone; ++i) watch.end(0);
-  EXPECT_EQ(steps_alone(), HelperWatch::kAlone) << "after a calm";
 }
 
 }  // namespace

@@ -4,7 +4,7 @@ namespace palpate::linear {
 
 void ClusterTeam::share(const NodeOrder& order, const std::vector<int>& row_start) {
   order_ = &order;
-  const int threads = most();
+  const int threads = size();
   mine_.assign(static_cast<std::size_t>(threads) + 1, 0);
   int part = 0;
   for (int t = 1; t <= threads; ++t) {

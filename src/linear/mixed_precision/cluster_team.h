@@ -12,7 +12,6 @@ class ClusterTeam {
  public:
   explicit ClusterTeam(int threads) : team_(threads) {}
   int size() const { return team_.size(); }
-  int most() const { return team_.most(); }
 
   /// Distributes the parts over the threads, balanced by the number of blocks as far as whole parts allow.
   /// @param row_start  First block of each row, in the order's numbering.
@@ -27,13 +26,17 @@ class ClusterTeam {
   /// Calls work(part, first node, last node) for each part of a thread. Call inside run().
   template <class Work>
   void over(int thread, Work&& work) const {
-    for (std::size_t p = first_part(thread); p < first_part(thread + 1); ++p)
+    for (auto p = static_cast<std::size_t>(mine_[static_cast<std::size_t>(thread)]);
+         p < static_cast<std::size_t>(mine_[static_cast<std::size_t>(thread) + 1]); ++p)
       work(p, order_->first_node(p), order_->first_node(p + 1));
   }
   /// Calls work(cluster, first node, last node) for each cluster of a thread's parts. Call inside run().
   template <class Work>
   void over_clusters(int thread, Work&& work) const {
-    const auto cluster = [&](int t) { return static_cast<std::size_t>(order_->part[first_part(t)]); };
+    const auto cluster = [&](int t) {
+      return static_cast<std::size_t>(
+          order_->part[static_cast<std::size_t>(mine_[static_cast<std::size_t>(t)])]);
+    };
     for (std::size_t c = cluster(thread); c < cluster(thread + 1); ++c)
       work(c, order_->start[c], order_->start[c + 1]);
   }
@@ -44,13 +47,6 @@ class ClusterTeam {
   }
 
  private:
-  /// Returns the first part of a thread; of the thread after the last one, the number of parts.
-  std::size_t first_part(int thread) const {
-    const std::size_t last = mine_.size() - 1;
-    if (team_.size() == 1) return static_cast<std::size_t>(mine_[thread == 0 ? 0 : last]);
-    return static_cast<std::size_t>(mine_[static_cast<std::size_t>(thread)]);
-  }
-
   Team team_;
   const NodeOrder* order_ = nullptr;
   std::vector<int> mine_;  ///< first part of each thread; threads + 1 entries

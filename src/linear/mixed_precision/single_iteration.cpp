@@ -18,7 +18,7 @@ double sum_of(const std::vector<double>& parts) {
 void SingleIteration::prepare() {
   for (Singles* v : {&d_, &r_, &z_, &p_, &q_})
     v->assign(4 * static_cast<std::size_t>(matrix_.nodes()) + kVectorTail, 0.0f);
-  bounds_.assign(static_cast<std::size_t>(team_.most()), {});
+  bounds_.assign(static_cast<std::size_t>(team_.size()), {});
   partial_.assign(static_cast<std::size_t>(matrix_.order().clusters()), 0.0);
   partial_pq_.assign(static_cast<std::size_t>(matrix_.order().parts()), 0.0);
   y_.assign(static_cast<std::size_t>(clusters_.stride()), 0.0f);
@@ -32,9 +32,13 @@ void SingleIteration::clear_correction() {
   last_length_ = 0.0f;
 }
 
-void SingleIteration::begin(double start) { bounds_[0].begin(start); }
+void SingleIteration::begin(double start) {
+  for (EnergyBound& bound : bounds_) bound.begin(start);
+}
 
-void SingleIteration::end() { bounds_[0].end(); }
+void SingleIteration::end() {
+  for (EnergyBound& bound : bounds_) bound.end();
+}
 
 void SingleIteration::restart() {
   moved_ = false;
@@ -115,7 +119,6 @@ SolveStatus SingleIteration::reduce(double& rho_in_out, double beta, double spen
   SolveStatus status = SolveStatus::kOk;
   const double rho_start = rho_in_out;
   const bool follows = pq_ > 0.0;  // there is a direction from before
-  std::fill(bounds_.begin() + 1, bounds_.end(), bounds_[0]);
   team_.run([&](int t) {
     EnergyBound& bound = bounds_[static_cast<std::size_t>(t)];
     double rho = rho_start, b = beta;
