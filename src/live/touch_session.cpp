@@ -203,9 +203,8 @@ class TouchSession {
     options.duration_s = duration_of(description);
     options.real_time = description.tool.has_value();
     options.command = "palpate touch " + setup_.scene;
-    const auto assemble = [&](const scene::Description& d) { return loop::assemble(d, std::move(hands)); };
     session::RunSession run(options, description, nullptr,
-                            {assemble, std::move(observers), &controls_.pause()});
+                            {std::move(hands), std::move(observers), &controls_.pause()});
     show(run.world(), observer, mailbox, Recording{options.folder, wall_seconds()});
     options_.report("recording into " + options.folder);
     session::Callbacks callbacks;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "bindings.h"
+#include "callback_device.h"
 #include "context_of_call.h"
 #include "interrupt.h"
 #include "missing_models.h"
@@ -76,13 +77,15 @@ std::vector<std::string> files_of(const scene::Description& description, const s
 }
 
 py::dict run_to_end(const session::Options& options, const scene::Description& description,
-                    session::Resumption* resumption) {
+                    session::Resumption* resumption, const py::object& hands = py::none()) {
   refuse_missing_models(description);
   const RunOfProcess right;
   const ContextOfCall context;
+  std::vector<std::unique_ptr<device::Device>> devices = callback_devices(hands, description);
   std::unique_ptr<session::RunSession> run;
   without_gil([&](const session::Callbacks& callbacks) {
-    run = std::make_unique<session::RunSession>(options, description, resumption);
+    run = std::make_unique<session::RunSession>(
+        options, description, resumption, session::RunAttachments{std::move(devices), {}, nullptr});
     run->simulate(callbacks);
     run->compare_with_references(callbacks);
     run->write_results();
@@ -96,9 +99,9 @@ py::dict run_to_end(const session::Options& options, const scene::Description& d
   return result_of(output.folder, run->summary(), std::move(files), output.missing.outputs());
 }
 
-py::dict run(const Scene& scene, session::Options options) {
+py::dict run(const Scene& scene, session::Options options, const py::object& hands) {
   options.scene = {scene.is_from_file() ? scene.description().path : "", scene.changes(), ""};
-  return run_to_end(options, scene.description(), nullptr);
+  return run_to_end(options, scene.description(), nullptr, hands);
 }
 
 py::dict resume(const std::string& folder) {
@@ -157,7 +160,7 @@ void bind_runs(py::module_& module) {
       .def_readwrite("real_time", &Options::real_time)
       .def_readwrite("against_monolithic", &Options::against_monolithic)
       .def_readwrite("checkpoint_every_s", &Options::checkpoint_every_s);
-  module.def("_run", &run, py::arg("scene"), py::arg("options"));
+  module.def("_run", &run, py::arg("scene"), py::arg("options"), py::arg("hands") = py::none());
   module.def("_resume", &resume, py::arg("folder"));
   module.def(
       "_movie",

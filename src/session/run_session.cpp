@@ -63,6 +63,8 @@ RunSession::RunSession(const Options& options, const scene::Description& descrip
   const PictureOptions pictures = check_pictures(options_, description_);
   if (has_checkpoints_) check_checkpoints(options_, description_);
   if (options_.against_monolithic) compare::refuse_against_monolithic(description_);
+  if (has_checkpoints_ && !attachments_.hands.empty())
+    fail("checkpoints: hands that are moved by the calling program cannot be resumed; leave out one of them");
   assemble();
   open_folder();
   attach_observers(pictures);
@@ -71,7 +73,7 @@ RunSession::RunSession(const Options& options, const scene::Description& descrip
 void RunSession::assemble() {
   const double start = wall_seconds();
   counters::reset();
-  world_ = attachments_.assemble ? attachments_.assemble(description_) : loop::assemble(description_);
+  world_ = loop::assemble(description_, std::move(attachments_.hands));
   ran_.assemble_s = wall_seconds() - start;
   if (has_checkpoints_) prepare_checkpoints();
   loop::check_clock(*world_, options_.real_time);

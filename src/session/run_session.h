@@ -9,6 +9,7 @@
 #include "loop/haptic_memory.h"
 #include "loop/penetration_warning.h"
 #include "loop/trace.h"
+#include "palpate/device/device.h"
 #include "palpate/loop/recorder.h"
 #include "session/callbacks.h"
 #include "session/checkpoint_files.h"
@@ -23,8 +24,8 @@ namespace palpate::session {
 
 /// Parts of a run that its caller owns, in addition to those of the scene.
 struct RunAttachments {
-  /// Assembles the scene, for example with other devices; empty: loop::assemble().
-  std::function<std::unique_ptr<loop::World>(const scene::Description& description)> assemble;
+  /// Devices in place of the scene's, as for loop::assemble(); not for a run with checkpoints.
+  std::vector<std::unique_ptr<device::Device>> hands;
   std::vector<loop::Observer*> observers;    ///< Called after those of the session; they outlive it.
   const std::atomic<bool>* pause = nullptr;  ///< As loop::RunOptions::pause
 };

@@ -40,7 +40,7 @@ ALLOWED = {
     "experiments": ["core", "scene", "loop", "store"],
     "haptic_stability": ["core", "mesh", "device", "tool", "scene", "loop"],
     "report": ["core", "mesh", "store"],
-    "session": ["core", "scene", "store", "render", "loop", "experiments", "report"],
+    "session": ["core", "scene", "device", "store", "render", "loop", "experiments", "report"],
     "live": ["core", "mesh", "contact", "device", "scene", "loop", "session", "report", "store"],
     # src/cli/touch_program: the program behind `palpate touch`
     "touch_program": ["core", "scene", "live", "cli"],

@@ -41,6 +41,12 @@ long long counter(const Device& device, const std::string& name) {
   return -1;
 }
 
+void skip_with_sanitizers() {
+#ifdef PALPATE_SANITIZED
+  GTEST_SKIP() << "sanitizers handle fatal signals";
+#endif
+}
+
 }  // namespace
 
 TEST(Plugin, samples_and_receives_forces) {
@@ -143,6 +149,8 @@ TEST(Plugin, libraries_that_do_not_fit_are_refused) {
 }
 
 TEST(PluginDeath, a_crash_names_the_driver_and_its_function) {
+  skip_with_sanitizers();
+  if (IsSkipped()) return;
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto run = [](const std::string& options) {
     const auto device = driver(options);
@@ -158,6 +166,8 @@ TEST(PluginDeath, a_crash_names_the_driver_and_its_function) {
 }
 
 TEST(PluginDeath, a_crash_elsewhere_is_not_blamed_on_the_driver) {
+  skip_with_sanitizers();
+  if (IsSkipped()) return;
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto run = [] {
     const auto device = driver("");

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """A hand that a Python function moves: called once per tick with the force of the tick before; what it may
 return, and what happens where it fails."""
+import tempfile
 import unittest
 
 from built import SCENES
@@ -123,6 +124,31 @@ class Hands(unittest.TestCase):
         simulation.run()
         np.testing.assert_array_equal(simulation.hand(left).handle_positions[-1], (-0.2, 0.0, 0.3))
         self.assertGreater(len(simulation.hand()), 10)
+
+    def test_runs_with_files_in_virtual_and_in_real_time(self):
+        def hand(time, force, torque):
+            return 0.0, 0.0, 0.082 - 0.05 * min(time, 0.15)
+        simulation = palpate.Simulation(palpate.load(BALL), duration_s=0.2, hands=hand)
+        simulation.run()
+        peak = np.linalg.norm(simulation.hand().forces, axis=1).max()
+        with tempfile.TemporaryDirectory(prefix="palpate-python-") as folder:
+            run = palpate.run(BALL, folder=f"{folder}/virtual", duration_s=0.2, hands=hand)
+            self.assertEqual(run.outcome, "finished")
+            self.assertEqual(run.summary["figures"]["hands"][0]["peak_force_n"], peak)
+            run = palpate.run(BALL, folder=f"{folder}/real", duration_s=0.2, hands=hand, real_time=True)
+            self.assertEqual(run.summary["figures"]["real_time"]["ticks_timed"], 200)
+            self.assertGreater(run.summary["figures"]["hands"][0]["peak_force_n"], 0.1 * peak)
+            with self.assertRaisesRegex(palpate.Error, "cannot be resumed"):
+                palpate.run(BALL, folder=f"{folder}/kept", hands=hand, checkpoint_every_s=0.1)
+
+            def wrong(time, force, torque):
+                if time > 0.05:
+                    raise LookupError("in the thread of the ticks")
+                return hand(time, force, torque)
+            for real_time in (False, True):
+                with self.assertRaisesRegex(LookupError, "in the thread of the ticks"):
+                    palpate.run(BALL, folder=f"{folder}/wrong{real_time}", duration_s=0.2, hands=wrong,
+                                real_time=real_time)
 
 
 if __name__ == "__main__":

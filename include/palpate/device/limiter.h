@@ -56,7 +56,7 @@ class WrenchLimiter {
   long rejected_ticks() const { return rejected_; }
   /// Returns the number of valid ticks outside the workspace.
   long outside_ticks() const { return outside_; }
-  /// Returns the number of ticks without a valid pose.
+  /// Returns the number of ticks whose last valid pose is at least kFallTime old, so that the wrench is zero.
   long ticks_without_pose() const { return without_pose_; }
   void archive(Archive& a);  ///< Writes the state to an archive, or restores it.
 

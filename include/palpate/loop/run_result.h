@@ -25,7 +25,7 @@ struct HandResult {
   long rejected_ticks = 0;         ///< Ticks whose wrench or time was not finite: forces fall to zero.
   std::optional<PortEnergy> port;  ///< Only if passivity is observed or controlled.
   std::optional<double> buzz_n;    ///< Force on the hand above 30 Hz, RMS [N].
-  long ticks_without_pose = 0;     ///< Ticks without a valid pose of the device.
+  long ticks_without_pose = 0;     ///< Ticks whose last pose of the device is too old for a force.
 };
 
 /// Result of a run: final status, cost and counters.
@@ -43,7 +43,7 @@ struct RunResult {
   long limited_ticks = 0;            ///< Ticks in which the device's limit reduced the wrench.
   long outside_ticks = 0;       ///< Ticks with the handle outside the device's workspace, where forces fade.
   long rejected_ticks = 0;      ///< Ticks whose wrench or time was not finite: forces fall to zero.
-  long ticks_without_pose = 0;  ///< Ticks without a valid pose of the device.
+  long ticks_without_pose = 0;  ///< Ticks whose last pose of the device is too old for a force.
   std::vector<long> tunnelled;  ///< Vertices that tunnelled, one entry per [[contact]].
   std::optional<EnergyBalance> energy;  ///< At the end, if an observer requests it.
   long sub_steps = 0;                   ///< Additional contact queries for tunnelling = "substep"

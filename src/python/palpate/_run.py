@@ -50,18 +50,19 @@ def run(scene: Scene | str | os.PathLike[str], *, folder: str | os.PathLike[str]
         frames_per_s: float = 0.0, movie: str | os.PathLike[str] = "", fps: float = 0.0, slow: float = 1.0,
         size: str = "", shade: str = "displacement", report: bool = False, trace: bool = False,
         passivity: str = "off", real_time: bool = False, against_monolithic: bool = False,
-        checkpoint_every_s: float = 0.0) -> Run:
+        checkpoint_every_s: float = 0.0, hands: Any = None) -> Run:
     """Runs a scene and writes the files of `palpate run`, whose options have the same meaning.
 
     `scene` is a Scene, a file or the name of an included scene; `folder` is by default out/NAME, if the scene
-    records or an option requests anything.  Raises Error for invalid input, and IntegratorError if the
+    records or an option requests anything.  `hands` is a function that moves the first hand, or a dict of hand
+    names and functions, as for Simulation; in real time, it has to return within a tick.  Raises Error for invalid input, and IntegratorError if the
     integrator fails; the files are then complete up to the failure.
     """
     options = _palpate._RunOptions()
     for name, value in {**locals(), "folder": os.fspath(folder), "movie": os.fspath(movie)}.items():
-        if name not in ("scene", "options"):
+        if name not in ("scene", "options", "hands"):
             setattr(options, name, value)
-    return _run_of(_palpate._run(_scene_of(scene), options))
+    return _run_of(_palpate._run(_scene_of(scene), options, hands))
 
 
 def resume(folder: str | os.PathLike[str]) -> Run:
