@@ -33,11 +33,11 @@ class PluginDevice : public Device {
   bool is_live() const override { return library_.needs_real_time(); }
   void bound(const PoseBounds& bounds) override { bounds_ = bounds; }
   std::vector<std::pair<std::string, long long>> counters() const override {
-    return {
-        {"poses_accepted", accepted_},
-        {"poses_not_finite", not_finite_},
-        {"poses_out_of_bounds", out_of_bounds_},
-        {"longest_driver_call_us", std::chrono::duration_cast<std::chrono::microseconds>(longest_).count()}};
+    return {{"poses_accepted", accepted_},
+            {"poses_not_finite", not_finite_},
+            {"poses_out_of_bounds", out_of_bounds_},
+            {"us_in_longest_driver_call",
+             std::chrono::duration_cast<std::chrono::microseconds>(longest_).count()}};
   }
 
  protected:

@@ -23,7 +23,7 @@ TYPES = {
 }
 # Longest first: "_n_m" is the ending of a stiffness and of a torque.
 UNITS = {"n_m_rad": ("N m/rad",), "n_s_m": ("N s/m",), "per_s": ("1/s",), "n_m": ("N m", "N/m"),
-         "mib": ("MiB",), "us": ("µs",), "rad": ("rad",), "m2": ("m²",), "m": ("m",), "n": ("N",), "j": ("J",), "s": ("s",)}
+         "mib": ("MiB",), "rad": ("rad",), "m2": ("m²",), "m": ("m",), "n": ("N",), "j": ("J",), "s": ("s",)}
 SNAKE_CASE = re.compile("[a-z][a-z0-9]*(_[a-z0-9]+)*")
 # Keys that no scene of this test has: they need an event that is rare, a peer, or minutes.
 ELSEWHERE = {"figures.options.ordering", "figures.sizes.smallest_step_part",
@@ -33,7 +33,7 @@ ELSEWHERE = {"figures.options.ordering", "figures.sizes.smallest_step_part",
 
 # Counters of devices that need hardware, a driver or a peer (devices_test.py).
 OF_DEVICES = ("wrenches_unsent", "poses_accepted", "poses_not_finite", "poses_out_of_bounds",
-              "longest_driver_call_us", "motion_packets", "button_packets", "other_packets", "pad_events",
+              "us_in_longest_driver_call", "motion_packets", "button_packets", "other_packets", "pad_events",
               "rumble_changes", "connections_lost")
 
 
