@@ -54,9 +54,10 @@ def run(scene: Scene | str | os.PathLike[str], *, folder: str | os.PathLike[str]
     """Runs a scene and writes the files of `palpate run`, whose options have the same meaning.
 
     `scene` is a Scene, a file or the name of an included scene; `folder` is by default out/NAME, if the scene
-    records or an option requests anything.  `hands` is a function that moves the first hand, or a dict of hand
-    names and functions, as for Simulation; in real time, it has to return within a tick.  Raises Error for invalid input, and IntegratorError if the
-    integrator fails; the files are then complete up to the failure.
+    records or an option requests anything.  `hands` is a function that moves the first hand, or a dict of
+    hand names and functions, as for Simulation; in real time, it has to return within a tick.  Raises Error
+    for invalid input, and IntegratorError if the integrator fails; the files are then complete up to the
+    failure.
     """
     options = _palpate._RunOptions()
     for name, value in {**locals(), "folder": os.fspath(folder), "movie": os.fspath(movie)}.items():
