@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "cases.h"
+#include "experiments/compare/grid_convergence.h"
 #include "images.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
@@ -76,8 +77,14 @@ double theory(double depth) { return 4.0 / 3.0 * kReduced * std::sqrt(kRadius) *
 
 std::string name_of(Way way) { return way == Way::kPoints ? "material points" : "vertices"; }
 
+/// Force on the half-space by `limit_of`, and the estimate of `compare --mesh`, whose uncertainty must
+/// contain the exact value.
+struct Measured {
+  Measurement force, estimate;
+};
+
 /// Measures the force on the half-space, from a family of blocks.
-Measurement measure(Way way, double depth, const std::string& fault) {
+Measured measure(Way way, double depth, const std::string& fault) {
   std::vector<double> h, by_size, far, by_block;
   for (const int m : {2, 3, 4}) {
     h.push_back(block(m, kMiddle).smallest_cell() / kContact);
@@ -89,31 +96,44 @@ Measurement measure(Way way, double depth, const std::string& fault) {
     by_block.push_back(doublings == kMiddle ? by_size.front() : force(way, mesh, depth, fault));
   }
   const Limit limit = limit_of(h, by_size);
-  const double exact = theory(depth), found = limit.value * at_zero(far, by_block) / by_block[1];
+  const double far_factor = at_zero(far, by_block) / by_block[1];
+  const double exact = theory(depth), found = limit.value * far_factor;
   std::vector<double> errors;  // Error of the elements alone.
   for (const double one : by_size) errors.push_back(std::abs(one / limit.value - 1.0));
   std::string note = "at L = 10, 20, 40 a:";
   for (const double one : by_block) note += fmt::format(" {:+.1f} %", 100.0 * (one / exact - 1.0));
-  return {.quantity = name_of(way) + ": force of the half-space [N]",
-          .computed = found,
-          .exact = exact,
-          .error = std::abs(found / exact - 1.0),
-          .bar = 3e-2,
-          .order = limit.order,
-          .order_low = 1.3,
-          .order_high = 2.3,
-          .note = note + "; order in the cells",
-          .refinement = {"cell / radius of contact", h, errors}};
+  Measured out;
+  const compare::GridEstimate grid = compare::estimate(h, by_size);
+  out.estimate = {.quantity = name_of(way) + ": estimate of `compare --mesh` [N] (error: in its uncertainty)",
+                  .computed = grid.value * far_factor,
+                  .exact = exact,
+                  .error = std::abs(grid.value * far_factor - exact) / (grid.uncertainty * far_factor),
+                  .bar = 1.0,
+                  .note = fmt::format("order {:.2f}, uncertainty {:.2g} %", grid.order,
+                                      100.0 * grid.uncertainty / grid.value)};
+  out.force = {.quantity = name_of(way) + ": force of the half-space [N]",
+               .computed = found,
+               .exact = exact,
+               .error = std::abs(found / exact - 1.0),
+               .bar = 3e-2,
+               .order = limit.order,
+               .order_low = 1.3,
+               .order_high = 2.3,
+               .note = note + "; order in the cells",
+               .refinement = {"cell / radius of contact", h, errors}};
+  return out;
 }
 
 std::vector<Measurement> run(const std::string& fault) {
-  std::vector<Measurement> out = {measure(Way::kVertices, kDepth, fault)};
+  const Measured vertices = measure(Way::kVertices, kDepth, fault);
+  std::vector<Measurement> out = {vertices.force};
   if (!fault.empty()) return out;
-  out.push_back(measure(Way::kPoints, kDepth, fault));
-  std::vector<double> depth = {kDepth}, force = {out.back().computed};
+  const Measured points = measure(Way::kPoints, kDepth, fault);
+  out.insert(out.end(), {vertices.estimate, points.force, points.estimate});
+  std::vector<double> depth = {kDepth}, force = {points.force.computed};
   for (const double part : {1.4, 2.0}) {
     depth.push_back(part * kDepth);
-    force.push_back(measure(Way::kPoints, depth.back(), fault).computed);
+    force.push_back(measure(Way::kPoints, depth.back(), fault).force.computed);
   }
   const double exponent = fitted_order(depth, force);
   out.push_back({.quantity = "material points: exponent of the depth (error: absolute)",

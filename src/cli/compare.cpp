@@ -132,6 +132,7 @@ TaskFolder::Use use_of(const CompareArguments& a, const std::string& folder) {
   option("--limit-s", fmt::format("{}", a.limit_s));
   option("--reference-limit-s", fmt::format("{}", a.reference_limit_s));
   if (a.haptic) job.words.emplace_back("--haptic");
+  if (a.mesh) job.words.emplace_back("--mesh");
   if (a.all) job.words.emplace_back("--all");
   if (!a.haptic) option("--linear-solver", a.linear_solver);
   return use;

@@ -19,6 +19,10 @@ struct CompareArguments {
   std::string linear_solver = "cholmod";             ///< Or "best" (of each method), "named" (by the scene)
   bool fresh = false;   ///< Discards the results of an earlier study in the folder
   bool haptic = false;  ///< Compares one scene with its monolithic solution
+  bool mesh = false;    ///< Refines elements, skin and contact points of one scene
+  bool json = false;    ///< Mesh: prints summary.json instead of tables
+  int levels = 3;       ///< Mesh: number of levels
+  int coarser = 0;      ///< Mesh: number of levels that are coarser than the scene
   ArrayArguments array;
 };
 
@@ -34,5 +38,13 @@ int compare(const CompareArguments& arguments, MissingOutputs& missing);
 /// Compares the force and torque on the hand with the monolithic solution (--haptic).
 /// @return the exit status
 int compare_haptic(const CompareArguments& arguments);
+
+/// Estimates the error of the force on the hand due to the mesh (--mesh).  @return the exit status
+int compare_mesh(const CompareArguments& arguments);
+
+/// Prints the error of a scene's force due to elements, skin and contact points together, in one line per
+/// figure, from one finer level.
+/// @param scene  name or file  @param folder  folder for refined meshes
+void print_mesh_error(const std::string& scene, const std::string& folder);
 
 }  // namespace palpate::cli

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
@@ -15,6 +17,7 @@ constexpr const char* kCompareExamples = R"(Examples:
   palpate compare cantilever press-ball --limit-s 5 -o out/both
   palpate compare press-ball --repeats 1 --integrator cvode-bdf --integrator linearly-implicit-euler
   palpate compare --haptic press-ball            error of its force, and its sources
+  palpate compare --mesh press-ball              error of its force due to the mesh
 
 Each point is one integrator at one tolerance or step size, at the scene's fixed exchange period, in a
 separate process, compared with a tight reference whose error is printed.  The refinement sequences are the
@@ -26,7 +29,13 @@ results.db (one row per run) and report.html.
 With --haptic one setting at a time differs from the scene, as listed in its [compare.haptic].  Points run
 one at a time unless --jobs is given, with limits of 120 s of CPU time per point and 1800 s per reference
 unless --limit-s and --reference-limit-s are given.  Writes haptic.csv, summary.json, results.db and
-report.html.)";
+report.html.
+
+With --mesh elements, skin and contact points are refined by two, one at a time and together; the force on
+the hand on each level gives the order and an estimate for elements of size zero, with its uncertainty.  All
+levels have the same accurate time integration, whose error is printed.  Meshes of files are divided in
+place: the shape of the body stays as it is.  Writes mesh.csv, summary.json, results.db, report.html and the
+refined meshes.)";
 
 void add_method_options(CLI::App& command, CompareArguments& arguments) {
   command
@@ -67,6 +76,37 @@ void add_method_options(CLI::App& command, CompareArguments& arguments) {
       ->check(CLI::Range(1, 1024));
 }
 
+/// Checks the options that --mesh excludes, and sets its limit where none was given.
+void settle_mesh(const CLI::App& command, CompareArguments& arguments) {
+  for (const char* only : {"--levels", "--coarser", "--json"})
+    if (!arguments.mesh && command.count(only) > 0) throw CLI::RequiresError(only, "--mesh");
+  if (!arguments.mesh) return;
+  for (const char* other : {"--haptic", "--all", "--integrator", "--linear-solver", "--repeats",
+                            "--reference-limit-s", "--slurm", "--task"})
+    if (command.count(other) > 0) throw CLI::ExcludesError("--mesh", other);
+  if (arguments.coarser >= arguments.levels)
+    throw CLI::ValidationError("--coarser", fmt::format("must be less than --levels, {}", arguments.levels));
+  if (command.count("--limit-s") == 0) arguments.limit_s = 900.0;
+}
+
+void add_mesh_options(CLI::App& command, CompareArguments& arguments) {
+  command.add_flag("--mesh", arguments.mesh,
+                   "instead, for one scene: error of the force on the hand due to the size of elements, the "
+                   "skin and the number of contact points, by refinement");
+  command
+      .add_option("--levels", arguments.levels,
+                  "with --mesh: number of levels; each divides elements, skin and spacing of points by two")
+      ->check(CLI::Range(2, 6))
+      ->capture_default_str();
+  command
+      .add_option("--coarser", arguments.coarser,
+                  "with --mesh: number of these levels that are coarser than the scene; only for generated "
+                  "bodies and for shapes (model:NAME)")
+      ->check(CLI::Range(0, 4))
+      ->capture_default_str();
+  command.add_flag("--json", arguments.json, "with --mesh: print the results as JSON, as in summary.json");
+}
+
 /// Checks the options that --haptic excludes, and sets its limits where none were given.
 void settle_haptic(const CLI::App& command, CompareArguments& arguments) {
   for (const char* other : {"--all", "--linear-solver"})
@@ -97,6 +137,7 @@ void add_compare(CLI::App& app, Invocation& invocation) {
       "--haptic", arguments->haptic,
       "instead, for one scene: error of force and torque on the hand against the monolithic "
       "solution, over exchange period, haptic rate, contact resolution, integrator, linearisation");
+  add_mesh_options(*command, *arguments);
   command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scenes' [s]")
       ->type_name("SECONDS")
       ->check(duration);
@@ -105,7 +146,9 @@ void add_compare(CLI::App& app, Invocation& invocation) {
   command->footer(kCompareExamples);
   command->callback([arguments, command, &invocation] {
     settle_haptic(*command, *arguments);
+    settle_mesh(*command, *arguments);
     invocation.action = [arguments] {
+      if (arguments->mesh) return compare_mesh(*arguments);
       return arguments->haptic ? compare_haptic(*arguments) : compare(*arguments);
     };
     invocation.factorises = true;

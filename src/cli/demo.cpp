@@ -50,6 +50,9 @@ int demo(const DemoArguments& arguments) {
                     "compare.exchange_periods_s=[0.02, 0.01]", "compare.refresh_periods_s=[]"};
   if (const int status = compare(cost, missing); status != 0) return missing.close(status);
 
+  fmt::print("\nError of the force due to the mesh and the contact points, from one finer level:\n\n");
+  print_mesh_error("press-ball", arguments.folder);
+
   const std::filesystem::path page = std::filesystem::path(arguments.folder) / "report.html";
   const report::RunReport written = report::write_report({head, arguments.folder}, page);
   report::add_missing(written, missing);

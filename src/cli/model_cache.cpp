@@ -22,7 +22,9 @@ void make_model(const std::string& name, const fs::path& path) {
   fmt::print(stderr, "palpate: making the model \"{}\", once; stored in {}\n", name, path.string());
   // under a temporary name until it is complete: two runs may build the model at the same time
   const fs::path draft = path.parent_path() / fmt::format("{}-{}.h5", name, ::getpid());
-  const int status = run_silently(kModel, {name, "-o", draft.string()});
+  // in a folder of its own: a file beside the caller with the name of a shape would be taken for a surface
+  const int status =
+      run_silently(kModel, {name, "-o", fs::absolute(draft).string()}, path.parent_path().string());
   if (status != 0) {
     fs::remove(draft, error);
     fail("the model \"{}\" was not made; see above", name);
@@ -32,6 +34,15 @@ void make_model(const std::string& name, const fs::path& path) {
 }
 
 }  // namespace
+
+void make_model_at(const std::string& name, long tetrahedra, long skin_vertices, const std::string& path) {
+  fmt::print(stderr, "palpate: making the model \"{}\" with {} tetrahedra\n", name, tetrahedra);
+  const int status =
+      run_to_end({path_of(kModel), name, "--tetrahedra", std::to_string(tetrahedra), "--skin-vertices",
+                  std::to_string(skin_vertices), "-o", fs::absolute(path).string()},
+                 fs::absolute(path).parent_path().string());
+  if (status != 0) fail("the model \"{}\" with {} tetrahedra was not made; see above", name, tetrahedra);
+}
 
 void make_missing_models(const scene::Description& description) {
   // for "model:NAME" the loader has set a path in the cache; any other file belongs to the user

@@ -9,4 +9,9 @@ namespace palpate::cli {
 /// model), or if this build has no such program
 void make_missing_models(const scene::Description& description);
 
+/// Builds one shape at another resolution.
+/// @param name  of the shape, "head"  @param path  of the new file
+/// @throws Error if the model was not built
+void make_model_at(const std::string& name, long tetrahedra, long skin_vertices, const std::string& path);
+
 }  // namespace palpate::cli

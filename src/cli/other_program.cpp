@@ -98,12 +98,14 @@ std::string output_of(const OtherProgram& other) {
   return out;
 }
 
-int run_silently(const OtherProgram& other, const std::vector<std::string>& words) {
-  std::vector<std::string> all = {path_of(other)};
+int run_silently(const OtherProgram& other, const std::vector<std::string>& words,
+                 const std::string& folder) {
+  std::vector<std::string> all = {std::filesystem::absolute(path_of(other)).string()};
   all.insert(all.end(), words.begin(), words.end());
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  if (!folder.empty()) posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
   pid_t child = 0;
   const int error =
       posix_spawn(&child, all.front().c_str(), &actions, nullptr, arguments_of(all).data(), environ);

@@ -57,8 +57,10 @@ std::string output_of(const OtherProgram& other);
 
 /// Runs the program to its end, and discards its standard output; errors and progress are printed.
 /// @param words  arguments
+/// @param folder  working folder; empty: that of the caller
 /// @return its exit status, nonzero too where a signal ended it
 /// @throws Error if the program's file does not exist
-int run_silently(const OtherProgram& other, const std::vector<std::string>& words);
+int run_silently(const OtherProgram& other, const std::vector<std::string>& words,
+                 const std::string& folder = {});
 
 }  // namespace palpate::cli

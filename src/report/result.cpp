@@ -24,6 +24,7 @@ const std::vector<Kind>& kinds() {
       {"Run", {"force.csv", "clock.csv", "trace.csv", "run.vtkhdf"}},
       {"Comparison", {"compare.csv", "restarts.csv", "exchange.csv", "methods.csv"}},
       {"Haptic comparison", {"haptic.csv"}},
+      {"Mesh comparison", {"mesh.csv"}},
       {"Study", {"study.csv"}},
       {"Validation", {"validation.json"}},
       {"Stability", {"stability.json"}},
@@ -143,7 +144,7 @@ Result open_result(const fs::path& dir) {
   if (out.kinds.empty())
     fail(
         "{}: contains no results to report (none of summary.json, force.csv, compare.csv, exchange.csv, "
-        "haptic.csv, study.csv, validation.json, stability.json, bench-*.json); give the directory that a "
+        "haptic.csv, mesh.csv, study.csv, validation.json, stability.json, bench-*.json); give the directory that a "
         "run, a comparison, a study, a validation, a stability matrix or a benchmark wrote",
         dir.string());
   out.of = text_at(out.summary, "scene");
@@ -178,6 +179,7 @@ void add_result(Page& page, const Result& result, const FirstView& view, bool pi
   if (has("exchange.csv")) add_exchange(page, csv("exchange.csv"));
   if (has("methods.csv")) add_methods(page, csv("methods.csv"));
   if (has("haptic.csv")) add_haptic(page, csv("haptic.csv"), result.summary);
+  if (has("mesh.csv")) add_mesh(page, csv("mesh.csv"), result.summary);
   if (has("study.csv"))
     add_study(page, study_in(dir),
               has("study.toml") ? store::read_file((dir / "study.toml").string()) : std::string(),

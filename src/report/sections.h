@@ -39,6 +39,9 @@ void add_methods(Page& page, const Table& methods);
 /// Adds the errors of a haptic comparison.
 /// @param summary  summary of the comparison: peaks and errors of the reference, and fitted orders
 void add_haptic(Page& page, const Table& haptic, const Json& summary);
+/// Adds the errors due to elements, skin and contact points.
+/// @param summary  summary of the comparison: estimates and orders
+void add_mesh(Page& page, const Table& mesh, const Json& summary);
 /// Returns study.csv with the CPU times of its tasks in a column "cpu_s".
 Table with_times(Table study, const Table& times);
 /// Adds a study.

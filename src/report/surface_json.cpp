@@ -167,7 +167,7 @@ double most_displacement(const Points& points, const Points& rest, const std::ve
   return most;
 }
 
-Json list_of(const Vec3& v) { return {v[0], v[1], v[2]}; }
+Json vector_json(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
 Json motions_json(const std::vector<Pose>& motions) {
   Json out = Json::array();
@@ -239,15 +239,15 @@ std::string surface_json(const store::RunReader& run, const ViewBudget& budget,
   }
   if (positions.empty()) return "";
   if (std::isfinite(settings.shown_at_s)) first_shown = first_from(times, settings.shown_at_s);
-  const Json target = settings.target_m ? list_of(*settings.target_m) : Json(nullptr);
+  const Json target = settings.target_m ? vector_json(*settings.target_m) : Json(nullptr);
   return Json{{"times_s", times},
-              {"low_m", list_of(box.low)},
-              {"high_m", list_of(box.high)},
+              {"low_m", vector_json(box.low)},
+              {"high_m", vector_json(box.high)},
               {"most_displacement_m", rounded_range(most)},
               {"first_shown", first_shown},
               {"ramp", colours::kRamp},
-              {"from", list_of(settings.from)},
-              {"up", list_of(settings.up)},
+              {"from", vector_json(settings.from)},
+              {"up", vector_json(settings.up)},
               {"target_m", target},
               {"zoom", settings.zoom},
               {"parts", parts_json(parts, box, rest, positions)}}

@@ -37,7 +37,7 @@ ALLOWED = {
     "model_program": ["core", "mesh", "proxy", "store", "render", "report", "model", "shapes", "cli"],
     "scene": ["core"],  # and the spec.h of every part: see is_allowed
     "loop": BELOW_LOOP,
-    "experiments": ["core", "scene", "loop", "store"],
+    "experiments": ["core", "mesh", "scene", "loop", "store"],
     "haptic_stability": ["core", "mesh", "device", "tool", "scene", "loop"],
     "report": ["core", "mesh", "store"],
     "session": ["core", "scene", "device", "store", "render", "loop", "experiments", "report"],

@@ -285,6 +285,25 @@ class Judgements(Cli):
         self.assertIn("takes one SCENE", self.refused("compare", "--haptic", "press-ball", "twist-ball"))
         self.assertIn("--all", self.refused("compare", "--haptic", "press-ball", "--all"))
 
+    def test_the_error_due_to_the_mesh_is_estimated(self):
+        arguments = ["compare", "--mesh", "one-tet", "-o", "mesh"]
+        self.assertIn("no mesh of more than one element", self.good(*arguments))
+        arguments = ["compare", "--mesh", "cantilever", "--duration-s", "0.02", "--levels", "2",
+                     "--coarser", "1", "--set", "body.0.mesh.element_size_m=0.02", "-o", "mesh"]
+        text = self.good(*arguments)
+        first = text.splitlines()[0]
+        self.assertRegex(first, r"^cantilever: peak displacement \S+ m: [+-]\S+ % \+- \S+ % due to the element")
+        self.assertNotRegex(text, r"\bnan\b")
+        summary = json.loads((self.folder / "mesh/summary.json").read_text())
+        errors = summary["figures"]["mesh_errors"]
+        self.assertEqual(errors[0]["convergence"], "two levels, order assumed")
+        self.assertLess(errors[0]["error_of_value"], 0)  # linear elements are too stiff
+        self.assertEqual(json.loads(self.good(*arguments, "--json"))["figures"]["mesh_errors"], errors)
+        self.assertIn("Error due to the mesh", (self.folder / "mesh/report.html").read_text())
+        self.assertIn("takes one SCENE", self.refused("compare", "--mesh", "press-ball", "twist-ball"))
+        self.assertIn("--haptic", self.refused("compare", "--mesh", "press-ball", "--haptic"))
+        self.assertIn("--mesh", self.refused("compare", "press-ball", "--json"))
+
     def test_a_run_says_how_far_it_was_from_one_system(self):
         run = ["run", "press-ball", "--duration-s", "0.1", "--against-monolithic", *self.HAPTIC, "-o", "held"]
         text = self.good(*run)

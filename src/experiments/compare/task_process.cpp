@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/archive_bytes.h"
+#include "experiments/compare/mesh_run.h"
 #include "experiments/compare/methods.h"
 #include "experiments/compare/run.h"
 #include "palpate/core/error.h"
@@ -29,7 +30,9 @@ struct Job {
   }
 };
 
-experiments::Result result_of(const Run& run, const Job& job) {
+/// @tparam AnyRun  Run or MeshRun
+template <class AnyRun>
+experiments::Result result_of(const AnyRun& run, const Job& job) {
   const dynamics::StepResult& last = run.result.status;
   experiments::Result out;
   out.cpu_s = run.result.cpu_s;
@@ -38,7 +41,7 @@ experiments::Result result_of(const Run& run, const Job& job) {
     out.reason = out_of_time_reason(job.limit_s, run.result);
   } else if (!last.ok()) {
     out.status = Status::kFailed;
-    out.reason = job.kind == WorkKind::kHaptic
+    out.reason = job.kind == WorkKind::kHaptic || job.kind == WorkKind::kMesh
                      ? fmt::format("{}: {}", dynamics::to_string(last.status), last.message)
                      : last.message;
   } else {
@@ -64,6 +67,7 @@ experiments::Result run_kind(const Job& job, const std::atomic<bool>& out_of_tim
   switch (job.kind) {
     case WorkKind::kReference: return result_of(run_once(d, d.compare.duration_s, &out_of_time), job);
     case WorkKind::kHaptic: return result_of(run_for_wrenches(d, d.compare.duration_s, &out_of_time), job);
+    case WorkKind::kMesh: return result_of(run_for_mesh(d, d.compare.duration_s, &out_of_time), job);
     case WorkKind::kExchange: {
       ExchangeStudy study = compare_exchange(d, {{}, &out_of_time});
       const std::size_t made = study.points.size(),

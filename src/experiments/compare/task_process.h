@@ -7,7 +7,7 @@
 namespace palpate::compare {
 
 /// Kinds of work that a separate process does for a comparison.
-enum class WorkKind { kReference, kPoint, kExchange, kMethods, kHaptic };
+enum class WorkKind { kReference, kPoint, kExchange, kMethods, kHaptic, kMesh };
 
 /// Encodes one piece of work.  The scene is passed as text: the process has no access to the comparison, the
 /// scene depends on its text only, and its mesh files are found relative to the same folder.
@@ -17,7 +17,7 @@ std::string encode_job(WorkKind kind, const scene::Description& description, dou
                        const Trajectory* reference);
 
 /// Does the work encoded by encode_job(); a ProcessPool::Work.  @return an experiments::Result, whose bytes
-/// are a Run (kReference; kHaptic: wrenches only), a PointRun, an ExchangeStudy, or Methods
+/// are a Run (kReference; kHaptic: wrenches only), a PointRun, an ExchangeStudy, Methods, or a MeshRun
 std::string run_job(const std::string& input, const std::atomic<bool>& out_of_time);
 
 }  // namespace palpate::compare
