@@ -297,7 +297,10 @@ class Judgements(Cli):
         summary = json.loads((self.folder / "mesh/summary.json").read_text())
         errors = summary["figures"]["mesh_errors"]
         self.assertEqual(errors[0]["convergence"], "two levels, order assumed")
-        self.assertLess(errors[0]["error_of_value"], 0)  # linear elements are too stiff
+        self.assertAlmostEqual(errors[0]["error_m"], errors[0]["value_m"] - errors[0]["estimate_m"])
+        self.assertGreater(errors[0]["uncertainty_m"], 0)
+        levels = summary["figures"]["mesh_levels"]
+        self.assertGreater(levels[1]["elements"], levels[0]["elements"])
         self.assertEqual(json.loads(self.good(*arguments, "--json"))["figures"]["mesh_errors"], errors)
         self.assertIn("Error due to the mesh", (self.folder / "mesh/report.html").read_text())
         self.assertIn("takes one SCENE", self.refused("compare", "--mesh", "press-ball", "twist-ball"))
