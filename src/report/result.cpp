@@ -144,8 +144,8 @@ Result open_result(const fs::path& dir) {
   if (out.kinds.empty())
     fail(
         "{}: contains no results to report (none of summary.json, force.csv, compare.csv, exchange.csv, "
-        "haptic.csv, mesh.csv, study.csv, validation.json, stability.json, bench-*.json); give the directory that a "
-        "run, a comparison, a study, a validation, a stability matrix or a benchmark wrote",
+        "haptic.csv, mesh.csv, study.csv, validation.json, stability.json, bench-*.json); give the directory "
+        "that a run, a comparison, a study, a validation, a stability matrix or a benchmark wrote",
         dir.string());
   out.of = text_at(out.summary, "scene");
   if (out.of == "stability") out.of.clear();  // the cases of the matrix belong to no scene

@@ -56,7 +56,7 @@ struct Reference {
   TrajectoryError own_error = no_distance();
   /// Peaks on the hand; a torque that is only rounding is zero.
   double peak_force_n = 0.0, peak_torque_n_m = 0.0;
-  double cpu_s = 0.0;                                ///< CPU time of the run that serves as reference [s].
+  double cpu_s = 0.0;  ///< CPU time of the run that serves as reference [s].
 };
 
 /// Result of one contact method for the tool, compared with the first method of the scene's list: shows the

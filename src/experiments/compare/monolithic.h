@@ -21,8 +21,8 @@ struct MonolithicScene {
 MonolithicScene monolithic_scene(const scene::Description& description, double coarser = 1.0);
 
 /// A peak force below this is rounding [N]: that of a coupling of 1e4 N/m between coordinates of a metre.  A
-/// torque that is rounding (core/rounding.h) has the peak zero.  A scene without torque has no relative torque
-/// error, and no order.
+/// torque that is rounding (core/rounding.h) has the peak zero.  A scene without torque has no relative
+/// torque error, and no order.
 inline constexpr double kLeastPeak = 1e-12;
 
 /// Returns the error relative to the peak; NaN where the peak is at most kLeastPeak.
