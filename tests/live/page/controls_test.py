@@ -165,6 +165,9 @@ class Page(InBrowser):
         self.tab.wait_for(f"palpateTest.frames() > {frames}", 10)
         hidden = "['reading', 'force', 'take', 'settings'].map((id) => document.getElementById(id).hidden)"
         self.assertEqual(self.tab.value(hidden), [True] * 4)
+        self.tab.wait_for(f"{text('light-late')}.trim() === 'no haptic ticks in this scene'", 10)
+        self.tab.wait_for("document.getElementById('light-rate').className === 'good'", 15)
+        self.assertNotIn("ticks", self.tab.value(text("figures")))
         self.assertEqual(self.tab.errors, [])
 
     def test_lights_have_words(self):

@@ -62,7 +62,8 @@ class Scene:
                 "sliders": [{"key": "tool.coupling.stiffness_n_m", "label": "Coupling stiffness",
                              "unit": "N/m", "value": self.stiffness, "min": 10, "max": 3000,
                              "logarithmic": True}]}
-        return out if self.hand else {**out, "hands": [], "tools": [], "sliders": []}
+        return out if self.hand else {**out, "hands": [], "tools": [], "sliders": [],
+                                             "tick_s": 0.0}
 
     def geometry(self):
         vertices, triangles = self.tool_shape

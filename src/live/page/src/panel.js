@@ -12,9 +12,23 @@ function light(id, level, text) {
 /// A share of ticks this small says nothing about what a hand feels.
 const FEW_LATE = 0.01, REAL_TIME = 0.98;
 
-function showRate({ running, rate_hz }, tick_s) {
-  const share = rate_hz * tick_s, percent = `${short(100 * share, 2)} %`;
-  if (!running) light("light-rate", "", "paused");
+/// Simulated seconds per second over the last few, for scenes without haptic ticks.
+const PACE_S = 3;
+let paces = [];
+
+function measuredPace({ time_s, running }) {
+  const now_s = performance.now() / 1000;
+  if (!running || time_s < paces.at(-1)?.time_s) paces = [];
+  paces.push({ time_s, now_s });
+  while (paces[0].now_s < now_s - PACE_S) paces.shift();
+  const [first] = paces;
+  return now_s > first.now_s ? (time_s - first.time_s) / (now_s - first.now_s) : 1;
+}
+
+function showRate(state, tick_s) {
+  const pace = measuredPace(state), share = tick_s > 0 ? state.rate_hz * tick_s : pace;
+  const percent = `${short(100 * share, 2)} %`;
+  if (!state.running) light("light-rate", "", "paused");
   else if (share >= REAL_TIME) light("light-rate", "good", "runs in real time");
   else light("light-rate", share > 0.8 ? "warn" : "bad", `slower than real time: ${percent} of it`);
 }
@@ -31,7 +45,8 @@ function recentSkips({ time_s, skipped_ticks }) {
   return skipped_ticks - skips[0].skipped_ticks;
 }
 
-function showLateness(state) {
+function showLateness(state, tick_s) {
+  if (!(tick_s > 0)) return light("light-late", "", "no haptic ticks in this scene");
   const { running, late_share } = state, recent = recentSkips(state);
   const skipped = recent > 0 ? `, ${recent} skipped in ${SKIPS_SHOWN_S} s` : "";
   if (!running) light("light-late", "", "no ticks while paused");
@@ -77,22 +92,25 @@ function showEnergy({ energy_j, passivity, time_s }) {
   else light("light-energy", "good", text);
 }
 
-/// The rows of the table of figures; a figure that the server does not have is left out.
+/// The rows of the table of figures; those about ticks where the scene has a hand.
 function figuresOf(state, tick_s) {
+  const time = ["simulated time", `${state.time_s.toFixed(1)} s`];
+  const viewers = ["viewers", String(state.viewers)];
+  if (!(tick_s > 0)) return [time, viewers];
   return [
-    ["simulated time", `${state.time_s.toFixed(1)} s`],
+    time,
     ["rate", state.running ? `${Math.round(state.rate_hz)} of ${short(1 / tick_s)} ticks/s` : "-"],
     ["lateness, 99 %", withUnit(state.late_p99_s, "s", 2)],
     ["work per tick, median", withUnit(state.work_p50_s, "s", 2)],
     ["work per tick, 99 %", withUnit(state.work_p99_s, "s", 2)],
     ["skipped ticks in all", String(state.skipped_ticks)],
-    ["viewers", String(state.viewers)],
-  ].filter(([, text]) => text && text !== "undefined");
+    viewers,
+  ];
 }
 
 export function showState(state, scene) {
   showRate(state, scene.tick_s);
-  showLateness(state);
+  showLateness(state, scene.tick_s);
   showPassivity(state);
   showEnergy(state);
   const list = element("figures"), rows = figuresOf(state, scene.tick_s);
