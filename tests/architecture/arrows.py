@@ -199,7 +199,8 @@ def unit_of(path):
     part, pieces = part_of(path), path.split("/")
     folder = next((folder for folder in ELSEWHERE if path.startswith(folder)), None)
     if folder is None:
-        folder = "/".join(pieces[:3 if path.startswith(PROMISED) or part in ("model_program", "touch_program") else 2]) + "/"
+        deep = path.startswith(PROMISED) or part in ("model_program", "touch_program")
+        folder = "/".join(pieces[:3 if deep else 2]) + "/"
     return part, path[len(folder):].rsplit(".", 1)[0].removesuffix("_impl")
 
 

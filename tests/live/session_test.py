@@ -112,7 +112,8 @@ class Session(unittest.TestCase):
         self.assertGreater(compared, 10)
 
     def test_a_recording_of_the_single_rate_scheme_replays_bitwise(self):
-        server = self.serve("press-ball", "--scheme", "single_rate", "--integrator", "linearly-implicit-euler",
+        server = self.serve("press-ball", "--scheme", "single_rate", "--integrator",
+                            "linearly-implicit-euler",
                             "--set", "integrator.step_s=0.001")
         viewer = self.watch(server)
         self.assertEqual(viewer.scene["scheme"], "single_rate")
