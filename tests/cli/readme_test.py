@@ -2,7 +2,8 @@
 """Runs every command of a page, in order, as a new user would: in one folder, with the files that the page
 asks to save there.
 
-    readme_test.py PROGRAM Readme|FirstTouch|ChooseAnIntegrator|IsMyLoopStable|Studies
+    readme_test.py PROGRAM Readme|FirstTouch|TouchYourMesh|ChooseAnIntegrator|IsMyLoopStable
+                           |BringYourDevice|Studies
 """
 import csv
 import re
@@ -30,6 +31,8 @@ class Page:
         cls.folder = Path(tempfile.mkdtemp(prefix="palpate-page-"))
         cls.addClassCleanup(shutil.rmtree, cls.folder)
         (cls.folder / "palpate").symlink_to(PROGRAM)
+        for name in ("examples", "include", "scenes"):  # a page is read in the folder of a clone
+            (cls.folder / name).symlink_to(TREE / name)
         text = (TREE / cls.page).read_text()
         cls.said, cls.failed = {}, []
         for language, content in re.findall(r"^```(\w+)\n(.*?)^```$", text, re.M | re.S):
@@ -47,7 +50,7 @@ class Page:
     def run_line(cls, line):
         if any(re.match(pattern, line) for pattern in ELSEWHERE):
             return
-        if not re.match(r"\./palpate |(head|tail) -n 1 ", line):
+        if not re.match(r"\./palpate |cc -shared |(head|tail) -n 1 ", line):
             cls.failed.append(f"{line}: a command that no test runs")
             return
         done = subprocess.run(["bash", "-c", line], cwd=cls.folder, capture_output=True, text=True,
@@ -136,6 +139,42 @@ class FirstTouch(Page, unittest.TestCase):
         for method in ("cvode-bdf", "linearly-implicit-euler"):
             self.assertGreaterEqual(len(re.findall(rf"^{method} +\S", table, re.M)), 3)
         self.assertTrue((self.folder / "out/compare/report.html").exists())
+
+
+class TouchYourMesh(Page, unittest.TestCase):
+    page = "docs/touch-your-mesh.md"
+    least = 7
+
+    def test_the_scene_touches_the_mesh(self):
+        with open(self.folder / "out/bracket/force.csv", encoding="utf-8") as file:
+            force = [float(row["force_z_n"]) for row in csv.DictReader(file)]
+        self.assertGreater(max(force), 0.05)
+        self.assertLess(abs(force[0]), 0.05 * max(force))  # it starts at the surface, unloaded
+
+    def test_its_numbers_have_their_rules(self):
+        comments = [line for line in (self.folder / "bracket.toml").read_text().splitlines() if "#" in line]
+        self.assertGreater(len(comments), 15)
+
+    def test_pictures_and_page_are_there(self):
+        for name in ("start.png", "out/bracket/picture.png", "out/bracket/report.html"):
+            self.assertGreater((self.folder / name).stat().st_size, 5000, name)
+
+    def test_the_error_due_to_the_mesh_is_printed(self):
+        self.assertIn("%", self.said_by("compare --mesh"))
+
+
+class BringYourDevice(Page, unittest.TestCase):
+    page = "docs/bring-your-device.md"
+    least = 3
+
+    def test_the_driver_presses(self):
+        said = self.said_by("device.type=plugin")
+        force = re.search(r"on the hand: at most (\S+) N", said)
+        self.assertGreater(float(force.group(1)), 0.1)
+        self.assertRegex(said, r"longest call")
+
+    def test_the_limit_is_printed(self):
+        self.assertRegex(self.said_by("stability --haptic"), r"coupling")
 
 
 class ChooseAnIntegrator(Page, unittest.TestCase):
