@@ -37,10 +37,10 @@ void make_model(const std::string& name, const fs::path& path) {
 
 void make_model_at(const std::string& name, long tetrahedra, long skin_vertices, const std::string& path) {
   fmt::print(stderr, "palpate: making the model \"{}\" with {} tetrahedra\n", name, tetrahedra);
-  const int status =
-      run_to_end({path_of(kModel), name, "--tetrahedra", std::to_string(tetrahedra), "--skin-vertices",
-                  std::to_string(skin_vertices), "-o", fs::absolute(path).string()},
-                 fs::absolute(path).parent_path().string());
+  const int status = run_silently(kModel,
+                                  {name, "--tetrahedra", std::to_string(tetrahedra), "--skin-vertices",
+                                   std::to_string(skin_vertices), "-o", fs::absolute(path).string()},
+                                  fs::absolute(path).parent_path().string());
   if (status != 0) fail("the model \"{}\" with {} tetrahedra was not made; see above", name, tetrahedra);
 }
 

@@ -2,9 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
+#include "core/object_colours.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/device/profile.h"
 #include "palpate/scene/hands.h"
@@ -16,11 +17,6 @@ namespace {
 using nlohmann::json;
 using Box = Eigen::AlignedBox3d;
 
-constexpr std::array<const char*, 6> kBodyColours = {"#d8a48f", "#8fb3d8", "#a8c98f",
-                                                     "#d8c68f", "#b79fd8", "#8fd0c8"};
-constexpr const char* kToolColour = "#5b6b7f";
-constexpr const char* kBoneColour = "#ece5cc";
-constexpr const char* kObstacleColour = "#8c99a8";
 constexpr double kObstacleOpacity = 0.45;
 
 void extend(Box& box, const Points& points) {
@@ -46,7 +42,7 @@ Box moving_box(const loop::World& world) {
 
 json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-json surface_entry(const std::string& name, const TriMesh& surface, const char* colour) {
+json surface_entry(const std::string& name, const TriMesh& surface, std::string_view colour) {
   return {{"name", name},
           {"vertices", surface.vertices.cols()},
           {"triangles", surface.faces.cols()},
@@ -63,7 +59,7 @@ json body_entries(const loop::World& world) {
                                           : static_cast<Eigen::Index>(body.boundary.node_of_vertex.size())},
                    {"triangles", body.surface_faces().cols()},
                    {"tets", body.rest.tets.cols()},
-                   {"colour", kBodyColours[out.size() % kBodyColours.size()]}});
+                   {"colour", colours::kBody}});
   return out;
 }
 
@@ -169,15 +165,15 @@ std::string scene_message(const loop::World& world, const std::string& name,
   out["tools"] = out["bones"] = out["obstacles"] = out["hands"] = json::array();
   for (const scene::Hand& hand : scene::hands_of(d)) {
     const auto index = out["tools"].size();
-    json tool = surface_entry(hand.name, loop::tool_surface(*hand.tool, world.folder), kToolColour);
+    json tool = surface_entry(hand.name, loop::tool_surface(*hand.tool, world.folder), colours::tool(index));
     tool["hand"] = index;
     out["tools"].push_back(tool);
     out["hands"].push_back(hand_entry(hand, index == 0));
   }
   for (const loop::Bone& bone : world.bones)
-    out["bones"].push_back(surface_entry(bone.name, bone.surface, kBoneColour));
+    out["bones"].push_back(surface_entry(bone.name, bone.surface, colours::kBone));
   for (const SceneSurface& obstacle : obstacles) {
-    json entry = surface_entry(obstacle.name, obstacle.surface, kObstacleColour);
+    json entry = surface_entry(obstacle.name, obstacle.surface, colours::kObstacle);
     entry["opacity"] = kObstacleOpacity;
     out["obstacles"].push_back(entry);
     if (obstacle.is_bounded) extend(box, obstacle.surface.vertices);

@@ -43,26 +43,4 @@ Picture draw_labelled(Scene scene, Options options, const std::vector<Label>& la
   return canvas.result();
 }
 
-Surface bar(const Vec3& from, const Vec3& to, double width) {
-  const Vec3 along = (to - from).normalized(), side = 0.5 * width * along.unitOrthogonal(),
-             up = along.cross(side);
-  Surface out;
-  out.points.resize(3, 8);
-  for (int end = 0; end < 2; ++end)
-    for (int k = 0; k < 4; ++k)
-      out.points.col(4 * end + k) =
-          (end == 0 ? from : to) + (k == 0 || k == 3 ? -1.0 : 1.0) * side + (k < 2 ? -1.0 : 1.0) * up;
-  out.faces.resize(3, 12);
-  for (int k = 0; k < 4; ++k) {
-    const int next = (k + 1) % 4;
-    out.faces.col(2 * k) << k, next, 4 + next;
-    out.faces.col(2 * k + 1) << k, 4 + next, 4 + k;
-  }
-  out.faces.col(8) << 0, 2, 1;
-  out.faces.col(9) << 0, 3, 2;
-  out.faces.col(10) << 4, 5, 6;
-  out.faces.col(11) << 4, 6, 7;
-  return out;
-}
-
 }  // namespace palpate::render

@@ -18,8 +18,4 @@ struct Label {
 /// @throws Error as draw()
 Picture draw_labelled(Scene scene, Options options, const std::vector<Label>& labels);
 
-/// Returns a straight bar with a square section, for axes and dimensions.
-/// @param width  edge of the section [m]
-Surface bar(const Vec3& from, const Vec3& to, double width);
-
 }  // namespace palpate::render

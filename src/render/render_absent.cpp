@@ -42,10 +42,6 @@ Picture draw_labelled(Scene, Options, const std::vector<Label>&) {
   check_available();
   return {};
 }
-Surface bar(const Vec3&, const Vec3&, double) {
-  check_available();
-  return {};
-}
 Surface outline(const Points&, const Faces&, double, double) {
   check_available();
   return {};

@@ -10,6 +10,8 @@
 #include "render/available.h"
 #include "render/labels.h"
 #include "render/marks.h"
+#include "session/scene_view.h"
+#include "session/snapshot_scene.h"
 #include "session/world_snapshot.h"
 
 namespace palpate::session {
@@ -105,7 +107,9 @@ void draw_start(loop::World& world, const std::string& path) {
   add_obstacles(scene, world, view);
   scene.title = fmt::format("{} at its start", world.description.name);
   scene.subtitle = "sizes of the bounding boxes; axes of the world";
-  render::save_png(render::draw_labelled(std::move(scene), {}, labels), path);
+  render::Options options;
+  options.view = scene_view(world.description.view);
+  render::save_png(render::draw_labelled(std::move(scene), options, labels), path);
 }
 
 }  // namespace palpate::session
