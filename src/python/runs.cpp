@@ -84,8 +84,8 @@ py::dict run_to_end(const session::Options& options, const scene::Description& d
   std::vector<std::unique_ptr<device::Device>> devices = callback_devices(hands, description);
   std::unique_ptr<session::RunSession> run;
   without_gil([&](const session::Callbacks& callbacks) {
-    run = std::make_unique<session::RunSession>(
-        options, description, resumption, session::RunAttachments{std::move(devices), {}, nullptr});
+    run = std::make_unique<session::RunSession>(options, description, resumption,
+                                                session::RunAttachments{std::move(devices), {}, nullptr});
     run->simulate(callbacks);
     run->compare_with_references(callbacks);
     run->write_results();

@@ -148,7 +148,7 @@ class TouchYourMesh(Page, unittest.TestCase):
     def test_the_scene_touches_the_mesh(self):
         with open(self.folder / "out/bracket/force.csv", encoding="utf-8") as file:
             force = [float(row["force_z_n"]) for row in csv.DictReader(file)]
-        self.assertGreater(max(force), 0.05)
+        self.assertGreater(max(force), 0.01)
         self.assertLess(abs(force[0]), 0.05 * max(force))  # it starts at the surface, unloaded
 
     def test_its_numbers_have_their_rules(self):
@@ -171,7 +171,7 @@ class BringYourDevice(Page, unittest.TestCase):
         said = self.said_by("device.type=plugin")
         force = re.search(r"on the hand: at most (\S+) N", said)
         self.assertGreater(float(force.group(1)), 0.1)
-        self.assertRegex(said, r"longest call")
+        self.assertRegex(said, r"\d+ us in longest driver call")
 
     def test_the_limit_is_printed(self):
         self.assertRegex(self.said_by("stability --haptic"), r"coupling")

@@ -250,7 +250,7 @@ class Results(Cli):
                       "exchange", "integrator", "record", "compare.ladder"):
             self.assertIn(table, tables)
         self.assertRegex(text, r"(?m)^spectral_radius +number +\[0, 1\] +0\.8 +.* generalized-alpha$")
-        self.assertRegex(text, r"(?m)^youngs_modulus_pa +number +Pa +> 0 +required +Young's modulus$")
+        self.assertRegex(text, r"(?m)^youngs_modulus_pa +number +Pa +> 0 +required +Young's modulus; ")
 
     def test_another_method_says_what_it_leaves_out(self):
         done = self.call("run", "one-tet", "--integrator", "rk4", "--duration-s", "0.001")

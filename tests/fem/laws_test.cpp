@@ -348,8 +348,8 @@ TEST_P(Laws, WhatALawDoesNotHaveIsRefusedWithTheWayOut) {
   if (law().warped)
     EXPECT_EQ(warped, "");
   else
-    expect_contains(warped, fmt::format("body \"liver\": tangent = \"warped\" is not available for material "
-                                        "= \"{}\"; use \"exact\" or \"projected\"",
+    expect_contains(warped, fmt::format("body \"liver\": tangent = \"warped\" is not available for law = "
+                                        "\"{}\"; use \"exact\" or \"projected\"",
                                         GetParam()));
   SoftBodyOptions split = with(Tangent::kExact), by_material = split;
   split.volumetric_share = 0.5;
@@ -358,7 +358,7 @@ TEST_P(Laws, WhatALawDoesNotHaveIsRefusedWithTheWayOut) {
     if (law().nodal_dilatation)
       EXPECT_EQ(make(options), "");
     else
-      expect_contains(make(options), "volumetric = \"nodal\" is not available for material");
+      expect_contains(make(options), "volumetric = \"nodal\" is not available for law");
   const std::string nodal =
       message_of([&] { NodalDilatation("liver", one_tet(), soft_material(), split, 0); });
   EXPECT_EQ(nodal.empty(), law().nodal_dilatation) << nodal;

@@ -132,13 +132,13 @@ TEST_F(AutoOnZeroRowSum, ReturnsToItsChoiceAfterAnUnsymmetricMatrix) {
   for (const double h : {1e-4, 0.1}) {
     solve(h);
     solve(h);
-    const long single = made("pcg-single"), two_level = made("pcg-two-level");
     BorderedMatrix whole;
     VecX b, x;
     beam.at(0.4, h, whole, b);
     whole.symmetric = false;
     ASSERT_EQ(solver->factor(whole), SolveStatus::kOk);
     ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+    const long single = made("pcg-single"), two_level = made("pcg-two-level");
     EXPECT_EQ(mixed(*solver).lagged_matrix(), nullptr) << "GMRES has none";
     solve(h);
     EXPECT_NE(mixed(*solver).lagged_matrix(), nullptr);

@@ -48,7 +48,7 @@ TEST(Assemble, MaterialNamesTheConstitutiveLaw) {
 TEST(Assemble, LocatesErrorsWhateverFilesThereAre) {
   scene::Description d = held_block();
   d.path = "block.toml";
-  d.bodies[0].material = "no-such-law";
+  d.bodies[0].law = "no-such-law";
   const std::string message = refusal(d), words = "body \"block\"";
   ASSERT_TRUE(message.starts_with("block.toml")) << message;
   ASSERT_NE(message.find(words + ":"), std::string::npos) << message;

@@ -70,14 +70,14 @@ struct Outcome {
 };
 
 std::vector<double> feel_of(const loop::RunResult& result) {
-  std::vector<double> out = {result.buzz_n.value_or(-1.0)};
+  std::vector<double> out = {result.buzz_n.value_or(-1.0), static_cast<double>(result.ticks_without_pose)};
   if (result.port)
     out.insert(out.end(),
                {result.port->energy, result.port->least, result.port->work,
                 result.port->controller_dissipated, static_cast<double>(result.port->controller_ticks)});
   for (const loop::HandResult& hand : result.more_hands)
     out.insert(out.end(), {static_cast<double>(hand.ticks), static_cast<double>(hand.limited_ticks),
-                           hand.buzz_n.value_or(-1.0)});
+                           static_cast<double>(hand.ticks_without_pose), hand.buzz_n.value_or(-1.0)});
   return out;
 }
 

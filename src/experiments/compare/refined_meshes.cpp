@@ -21,9 +21,9 @@ constexpr int kChildren = 8;
 
 /// Reads the tetrahedra of any file, with their regions, or a whole model.
 store::ModelFile read(const MeshSpec& spec, const fs::path& path, const std::string& scene_folder) {
-  if (store::is_model(path.string())) return store::read_model(path.string());
   store::ModelFile out;
   if (path.extension() == ".h5") {
+    if (store::is_model(path.string())) return store::read_model(path.string());
     out.model.tets = store::read_mesh(path.string());
   } else {
     MeshSpec unscaled = spec;

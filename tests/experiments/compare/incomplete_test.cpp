@@ -191,7 +191,11 @@ step_s = [0.01]
   const compare::SceneComparison cut = compare::run({d}, options).scenes[0];
   ASSERT_EQ(cut.missing_charts.size(), 2u);
   EXPECT_EQ(cut.missing_charts[0].of, "the contact methods");
-  EXPECT_EQ(cut.missing_charts[0].why, "out of time: 1e-06 s (after 0 of 2 points)");
+  // a point may end before its time is looked at
+  const std::string& why = cut.missing_charts[0].why;
+  EXPECT_TRUE(why == "out of time: 1e-06 s (after 0 of 2 points)" ||
+              why == "out of time: 1e-06 s (after 1 of 2 points)")
+      << why;
   EXPECT_EQ(cut.missing_charts[1].of, "the exchange period");
   EXPECT_EQ(compare::run({d}, options).scenes[0].missing_charts.size(), 2u) << "it is not tried in vain";
   options.reference_limit_s = 300.0;
