@@ -15,7 +15,7 @@ long TickPace::begin(std::int64_t late_ns) {
   const long behind = static_cast<long>(late_ns / tick_ns_);
   if (behind < kMostBehind) return 0;
   if (mean_ns_ > kMostLoad * tick * static_cast<double>(stride_) && stride_ < most_) {
-    const auto enough = static_cast<long>(std::ceil(mean_ns_ / (kChosenLoad * tick)));
+    const auto enough = static_cast<long>(std::ceil(mean_ns_ / (kMostLoad * tick)));
     change_to(std::min(most_, std::max(stride_ + 1, enough)));
     return std::max(0L, behind - kMostBehind);
   }
@@ -28,7 +28,7 @@ void TickPace::end(std::int64_t work_ns) {
   mean_ns_ += kWeight * (std::min(work, kMostOfMean * mean_ns_) - mean_ns_);
   if (++since_change_ < kCalm || stride_ == 1) return;
   since_change_ = 0;
-  if (mean_ns_ < kReturnLoad * tick * static_cast<double>(stride_ - 1)) change_to(stride_ - 1);
+  if (mean_ns_ < kMostLoad * tick * static_cast<double>(stride_ - 1)) change_to(stride_ - 1);
 }
 
 void TickPace::change_to(long stride) {

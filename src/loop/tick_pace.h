@@ -12,14 +12,15 @@ namespace palpate::loop {
 /// to a handle sampled when it is computed. A loop that is later either
 ///
 ///     does not keep up: the mean work of a step exceeds kMostLoad of its ticks. All further steps cover so
-///         many ticks that it does not. After kCalm steps they cover fewer, if the mean work permits; or
+///         many ticks that it does not. After kCalm steps they cover one tick less, if the mean work of these
+///         steps, which cost no less than shorter ones, is within kMostLoad of that; or
 ///     was interrupted: one step covers all ticks that are due.
 ///
 /// All times in nanoseconds.
 class TickPace {
  public:
   static constexpr long kMostBehind = 4, kCalm = 256;
-  static constexpr double kMostLoad = 0.9, kChosenLoad = 0.8, kReturnLoad = 0.6;
+  static constexpr double kMostLoad = 0.9;  ///< Largest share of its ticks that a step may take on average.
 
   /// @param tick_ns  length of a tick
   /// @param most  largest number of ticks per step
