@@ -113,6 +113,12 @@ void show(const compare::Comparison& comparison, const std::string& folder, Miss
 
 }  // namespace
 
+scene::Description one_scene_of(const CompareArguments& arguments, const char* option) {
+  if (arguments.scenes.size() != 1)
+    fail("compare {} takes one SCENE, not {}", option, arguments.scenes.size());
+  return scenes_of(arguments).front();
+}
+
 TaskFolder::Use use_of(const CompareArguments& a, const std::string& folder) {
   TaskFolder::Use use{folder, a.fresh, false, "comparison", {}};
   experiments::ArrayJob& job = use.job;

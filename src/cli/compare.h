@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "cli/array_job.h"
+#include "palpate/scene/description.h"
 
 namespace palpate::cli {
 
@@ -28,6 +29,11 @@ struct CompareArguments {
 
 /// Returns the use of a folder by a comparison.
 TaskFolder::Use use_of(const CompareArguments& arguments, const std::string& folder);
+
+/// Returns the scene of a comparison that takes one, with the changes of the command line.
+/// @param option  option that selects the comparison, for messages
+/// @throws Error for another number of scenes
+scene::Description one_scene_of(const CompareArguments& arguments, const char* option);
 
 /// Compares the error and run time of integrators.  @return the exit status
 int compare(const CompareArguments& arguments);

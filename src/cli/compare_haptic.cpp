@@ -25,13 +25,6 @@ namespace fs = std::filesystem;
 using compare::HapticComparison;
 using compare::HapticPoint;
 
-scene::Description scene_of(const CompareArguments& a) {
-  if (a.scenes.size() != 1) fail("compare --haptic takes one SCENE, not {}", a.scenes.size());
-  SceneArguments one{a.scenes.front(), a.overrides, ""};
-  if (a.duration_s > 0.0) one.overrides.push_back(fmt::format("compare.duration_s={}", a.duration_s));
-  return scene_of(one);
-}
-
 HapticComparison compare_watched(const scene::Description& scene, const CompareArguments& a,
                                  const experiments::Place& place, experiments::EngineOutcome& outcome) {
   Progress progress("references");
@@ -145,7 +138,7 @@ void add_missing(const HapticComparison& c, MissingOutputs& missing) {
 }  // namespace
 
 int compare_haptic(const CompareArguments& arguments) {
-  const scene::Description scene = scene_of(arguments);
+  const scene::Description scene = one_scene_of(arguments, "--haptic");
   const std::string folder =
       arguments.folder.empty() ? default_folder("compare-haptic-" + short_name(scene)) : arguments.folder;
   TaskFolder tasks(arguments.array, use_of(arguments, folder));

@@ -26,13 +26,6 @@ using compare::MeshLevel;
 using compare::MeshVariable;
 using Rows = std::vector<std::vector<std::string>>;
 
-scene::Description mesh_scene(const CompareArguments& a) {
-  if (a.scenes.size() != 1) fail("compare --mesh takes one SCENE, not {}", a.scenes.size());
-  SceneArguments one{a.scenes.front(), a.overrides, ""};
-  if (a.duration_s > 0.0) one.overrides.push_back(fmt::format("compare.duration_s={}", a.duration_s));
-  return scene_of(one);
-}
-
 MeshComparison compare_levels_watched(const scene::Description& scene, const CompareArguments& a,
                                       const std::string& folder, const experiments::Place& place,
                                       experiments::EngineOutcome& outcome) {
@@ -164,7 +157,7 @@ void print_mesh_error(const std::string& scene_name, const std::string& folder) 
 }
 
 int compare_mesh(const CompareArguments& arguments) {
-  const scene::Description scene = mesh_scene(arguments);
+  const scene::Description scene = one_scene_of(arguments, "--mesh");
   const std::string folder =
       arguments.folder.empty() ? default_folder("compare-mesh-" + short_name(scene)) : arguments.folder;
   TaskFolder tasks(arguments.array, use_of(arguments, folder));

@@ -25,7 +25,7 @@ namespace {
 struct NewArguments {
   std::string mesh, output, unit, up = "z", material = "liver";
   double tool_radius = 0.0;  ///< [m]; 0: by rule
-  int tetrahedra = 0;        ///< Of a model; 0: its default
+  int tetrahedra = 0;        ///< Number for a surface that is filled; 0: the default
   bool force = false;
 };
 

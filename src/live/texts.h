@@ -7,7 +7,7 @@
 /// Text messages to viewers (docs/live.md), in JSON.
 namespace palpate::live {
 
-/// What a viewer sees of the others.
+/// Holder of the handle and number of viewers, as one viewer sees them.
 struct ViewerPlace {
   const char* holder = "nobody";  ///< Who holds the handle: "you", "other" or "nobody"
   std::size_t viewers = 0;

@@ -29,7 +29,7 @@ using scene::ExchangeScheme;
 struct Setup {
   std::string scene;
   std::vector<std::string> overrides;
-  std::map<std::string, double> values;  ///< Of sliders.
+  std::map<std::string, double> values;  ///< Value of each slider, by its key
   bool record = false;
 };
 

@@ -16,7 +16,7 @@ struct NewScene {
   double scale = 1.0;                   ///< Key mesh.scale; 1: omitted
   bool scale_given = false;             ///< Whether the scene states the factor although it is 1
   bool skin = false;                    ///< Whether the file is a model with a skin
-  Vec3 rotation_vector = Vec3::Zero();  ///< Of the mesh [rad]
+  Vec3 rotation_vector = Vec3::Zero();  ///< Initial rotation of the mesh [rad]
   std::string material;                 ///< Name in fem::material_presets()
   double tool_radius = 0.0;             ///< [m]; 0: by rule
 };

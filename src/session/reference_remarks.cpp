@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "core/rounding.h"
-
 namespace palpate::session {
 namespace {
 
@@ -20,8 +18,7 @@ std::string line_of(const char* what, double rms, double max, double peak, const
 void add_lines(const std::string& whose, const compare::HandError& felt, std::vector<std::string>& out) {
   const compare::TrajectoryError& e = felt.error;
   out.push_back(whose + line_of("force error", e.force_rms_n, e.force_max_n, felt.peak_force_n, "N"));
-  constexpr double kSize = 1.0;  // Of a haptic scene [m].
-  if (felt.peak_torque_n_m == 0.0 && e.torque_max_n_m <= torque_rounding(felt.peak_force_n, kSize))
+  if (felt.peak_torque_n_m == 0.0 && e.torque_max_n_m <= felt.torque_rounding_n_m)
     out.push_back(whose + "no torque, in either");
   else
     out.push_back(whose +

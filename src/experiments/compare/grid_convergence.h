@@ -45,7 +45,8 @@ struct GridEstimate {
   double order = std::numeric_limits<double>::quiet_NaN();  ///< Observed order; NaN where there is none.
   /// Extrapolated value, or that of the finest mesh where there is no order; NaN with one level.
   double value = std::numeric_limits<double>::quiet_NaN();
-  double uncertainty = std::numeric_limits<double>::quiet_NaN();  ///< Of `value`, on both sides.
+  double uncertainty =
+      std::numeric_limits<double>::quiet_NaN();  ///< Half width of the interval about `value`.
 };
 
 /// Estimates a figure from its values on a sequence of meshes.

@@ -14,7 +14,7 @@ struct MeshRun {
   /// With a tool: force on the first hand at each tick [N].  Without one: the largest displacement of a node
   /// after each period, as a vector [m].
   Points series;
-  long elements = 0, nodes = 0, surface_vertices = 0;  ///< Of all bodies.
+  long elements = 0, nodes = 0, surface_vertices = 0;  ///< Sums over all bodies.
   long most_samples = 0;                               ///< Largest number of contact samples at one time.
   double setup_s = 0.0;                                ///< CPU time of assembly [s].
   loop::RunResult result;

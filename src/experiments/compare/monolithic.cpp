@@ -28,12 +28,15 @@ class EachHand : public loop::Observer {
   std::vector<WrenchRecorder> of_;
 };
 
+/// Size of the coordinates of a haptic scene, of which trajectories do not tell [m].
+constexpr double kSceneSize = 1.0;
+
 HandError hand_error(const Trajectory& felt, const Trajectory& reference) {
   HandError out;
   const loop::PeakWrench peak = loop::peak_of(reference.device, reference.tick_times);
   out.peak_force_n = peak.force_n;
-  constexpr double kSize = 1.0;  // Of a haptic scene [m].
-  if (peak.torque_n_m > torque_rounding(peak.force_n, kSize)) out.peak_torque_n_m = peak.torque_n_m;
+  out.torque_rounding_n_m = torque_rounding(peak.force_n, kSceneSize);
+  if (peak.torque_n_m > out.torque_rounding_n_m) out.peak_torque_n_m = peak.torque_n_m;
   out.error = wrench_distance(felt, reference);
   return out;
 }

@@ -34,6 +34,7 @@ inline double share_of_peak(double error, double peak) {
 struct HandError {
   TrajectoryError error = no_distance();
   double peak_force_n = 0.0, peak_torque_n_m = 0.0;  ///< Peaks of the reference.
+  double torque_rounding_n_m = 0.0;  ///< Torque that rounding can leave; a smaller peak counts as 0.
 };
 
 /// Result of comparing a completed run with a reference under the same hand motion; the inherited members
