@@ -33,18 +33,15 @@ class Page(InBrowser):
         start = self.pose()
         self.tab.drag((x, y), (x + 100, y - 50), button="left")
         self.wait_until(lambda: len(self.messages("handle")) > 0)
-        time.sleep(0.3)
-        moved = [b - a for a, b in zip(start[:3], self.pose()[:3])]
+        moved = [b - a for a, b in zip(start[:3], self.settled()[:3])]
         self.tab.drag((x, y), (x - 100, y + 50), button="left")
-        time.sleep(0.3)
-        for a, b in zip(start, self.pose()):  # the same way back: nothing was lost
+        for a, b in zip(start, self.settled()):  # the same way back: nothing was lost
             self.assertAlmostEqual(a, b, delta=1e-6)
         self.assertGreater(math.hypot(*moved), 0.005)
         self.assertGreater(moved[2], 0.1 * math.hypot(*moved), "up is up")
         self.tab.wheel((x, y), -100)
         self.wait_until(lambda: self.pose() != start)
-        time.sleep(0.2)
-        into = [b - a for a, b in zip(start[:3], self.pose()[:3])]
+        into = [b - a for a, b in zip(start[:3], self.settled()[:3])]
         along = sum(a * b for a, b in zip(moved, into)) / math.hypot(*moved) / math.hypot(*into)
         self.assertAlmostEqual(along, 0.0, delta=1e-4)  # at a right angle to the view's plane
         self.assertGreater(into[1], 0.0, "away from the eye, which is on the tool's side of the ball")
@@ -54,19 +51,17 @@ class Page(InBrowser):
         x, y = self.middle()
         self.tab.drag((x, y), (x + 50, y), modifiers=SHIFT)
         self.wait_until(lambda: self.pose()[3] < 0.999)
-        pose = self.pose()
+        pose = self.settled()
         self.assertAlmostEqual(math.hypot(*pose[3:]), 1.0, delta=1e-6)
         self.assertAlmostEqual(2 * math.acos(pose[3]), 50 * 0.008, delta=0.01)
         self.assertLess(math.dist(pose[:3], self.mock.scene.start), 1e-7)
         before = self.tool_point()
         self.tab.drag((x, y), (x + 80, y), button="right")
         self.tab.drag((x, y), (x + 80, y), modifiers=ALT)
-        time.sleep(0.2)
-        self.assertEqual(self.pose(), pose)
+        self.assertEqual(self.settled(), pose)
         after = self.tool_point()
         self.assertGreater(math.dist(before, after), 20)
         self.tab.value("document.getElementById('reset-view').click()")
-        time.sleep(0.2)
         self.assertLess(math.dist(before, self.tool_point()), 3)
 
     def test_keys_move_turn_and_give_back(self):
@@ -78,8 +73,7 @@ class Page(InBrowser):
         self.tab.call("Input.dispatchKeyEvent", **press)
         self.wait_until(lambda: math.dist(self.pose()[:3], start[:3]) > 0.002)
         self.tab.call("Input.dispatchKeyEvent", **{**press, "type": "keyUp"})
-        time.sleep(0.3)
-        rest = self.pose()
+        rest = self.settled()
         time.sleep(0.3)
         self.assertEqual(self.pose(), rest, "it moves only while the key is down")
         self.tab.key("Escape")
@@ -104,8 +98,7 @@ class Page(InBrowser):
             self.touch("touchMove", (x + 6 * step, y))
         self.touch("touchEnd")
         self.wait_until(lambda: self.pose() != start)
-        time.sleep(0.2)
-        moved = self.pose()
+        moved = self.settled()
         self.assertGreater(math.dist(moved[:3], start[:3]), 0.003)
         self.assertAlmostEqual(moved[2], start[2], delta=1e-6)  # sideways only
         before = self.tool_point()
@@ -113,8 +106,7 @@ class Page(InBrowser):
         for step in range(1, 11):
             self.touch("touchMove", (x - 50, y + 6 * step), (x + 50, y + 6 * step))
         self.touch("touchEnd")
-        time.sleep(0.2)
-        self.assertEqual(self.pose(), moved, "two fingers in parallel do not move the handle")
+        self.assertEqual(self.settled(), moved, "two fingers in parallel do not move the handle")
         self.assertGreater(math.dist(before, self.tool_point()), 3)
         self.touch("touchStart", (x - 50, y), (x + 50, y))
         for step in range(1, 11):

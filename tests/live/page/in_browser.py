@@ -85,3 +85,17 @@ class InBrowser(unittest.TestCase):
 
     def pose(self):
         return list(self.mock.scene.pose)
+
+    def settled(self):
+        """Returns the pose once the page has sent all that its input asks for: it has drawn twice, and for
+        half a second no message has come (a follower's last steps are sent frame by frame)."""
+        since, count = time.monotonic(), -1
+        until = since + 30.0
+        while time.monotonic() - since < 0.5:
+            self.tab.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+                           ".then(() => true)")
+            if len(self.mock.received) != count:
+                since, count = time.monotonic(), len(self.mock.received)
+            self.assertLess(time.monotonic(), until, "the page sends for ever")
+            time.sleep(0.02)
+        return self.pose()
