@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "loop/clearance.h"
-#include "loop/penetration.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 #include "palpate/scene/load.h"
@@ -36,9 +35,12 @@ double overlap_at_start(const World& world, std::size_t contact) {
   return found ? std::max(0.0, -found->gap.distance) : 0.0;
 }
 
-/// Rejects a scene in which an object starts inside another: contact would push it out at the nearest side,
-/// with the full force at once.
-[[noreturn]] void refuse_start(const World& world, std::size_t contact, const PenetrationReport& o) {
+}  // namespace
+
+// Rejects a scene in which an object starts inside another: contact would push it out at the nearest side,
+// with the full force at once.
+void PenetrationWarning::reject_start(const World& world, std::size_t contact, const PenetrationReport& o) {
+  rejected_start_ = true;
   const std::optional<Clearance> found = clearance_of(world, contact);
   const std::string what =
       found && found->gap.distance < 0.0
@@ -47,8 +49,6 @@ double overlap_at_start(const World& world, std::size_t contact) {
   fail("{}: contact {}: {}", scene::place_of(world.description, fmt::format("contact[{}]", contact)), o.pair,
        what);
 }
-
-}  // namespace
 
 // Called at each period and query: only numbers until a warning is due.  The limit of a contact is computed
 // at its first touch.
@@ -59,7 +59,7 @@ void PenetrationWarning::check(const World& world, double t) {
     checked_to_.assign(pairs, 0.0);
     for (std::size_t i = 0; t == 0.0 && i < pairs; ++i)
       if (starts_enclosed(world, i) && overlap_at_start(world, i) > penetration_limit(world, i))
-        refuse_start(world, i, penetration_report(world, i));
+        reject_start(world, i, penetration_report(world, i));
   }
   for (std::size_t i = 0; i < pairs; ++i) {
     if (!(world.contact->deepest(i) > checked_to_[i])) continue;
@@ -67,7 +67,7 @@ void PenetrationWarning::check(const World& world, double t) {
     if (!(world.contact->deepest(i) > checked_to_[i])) continue;
     checked_to_[i] = HUGE_VAL;
     const PenetrationReport o = penetration_report(world, i);
-    if (t == 0.0 && !o.of_itself) refuse_start(world, i, o);
+    if (t == 0.0 && !o.of_itself) reject_start(world, i, o);
     o.of_itself ? warn_of_own_penetration(o, t) : warn_of_penetration(o, t);
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "loop/penetration.h"
 #include "palpate/loop/run.h"
 
 namespace palpate::loop {
@@ -13,10 +14,15 @@ class PenetrationWarning : public Observer {
   void period(World& world, double t) override { check(world, t); }
   void queried(World& world, double t) override { check(world, t); }
 
+  /// Returns whether the start was rejected: nothing was simulated.
+  bool rejected_start() const { return rejected_start_; }
+
  private:
   void check(const World& world, double t);
+  [[noreturn]] void reject_start(const World& world, std::size_t contact, const PenetrationReport& report);
   /// Penetration per contact up to which nothing has to be computed [m]; infinite: warned
   std::vector<double> checked_to_;
+  bool rejected_start_ = false;
 };
 
 }  // namespace palpate::loop

@@ -150,6 +150,7 @@ void RunSession::simulate(const Callbacks& callbacks) {
     try {
       if (world_) write_summary(*world_, ran_, options_, Outcome{"failed", e.what()});
     } catch (const Error&) {}  // on the same disk; its summary says that the run is unfinished
+    if (penetration_warning_.rejected_start()) throw;
     fail("{} (data written so far are complete, in {})", e.what(), ran_.folder);
   }
   close_records();

@@ -103,6 +103,7 @@ class ContactResults(Cli):
         self.assertGreaterEqual(float(found[2]), 25.0)
         begins = self.refused("run", "deep.toml", "--set", "body.0.position_m=[0, 0, -0.005]", "-o", "begins")
         self.assertIn('"block" starts 30 mm inside "floor"; move "block" by 30 mm along (0, 0, 1)', begins)
+        self.assertNotIn("data written so far", begins)
         firm = self.call("run", "deep.toml", "--set", "contact.0.stiffness_pa_m=1e6", "-o", "firm")
         self.assertNotIn("penetration reached", firm.stderr)
 
