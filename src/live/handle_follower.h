@@ -15,12 +15,10 @@ struct FollowerLimits {
 ///
 ///     x'' = w^2 d - 2 w x',   d = r - x, shortened to |d| <= L = 2 V/w
 ///
-/// - A target that moves at a constant speed below V is followed with a lag of 2/w = 20 ms, without
-/// overshoot.
+/// - A target that moves at a constant speed below V is followed without overshoot, 2/w = 20 ms late.
 /// - |x'| <= w L/2 = V: d|x'|/dt <= w^2 L - 2 w |x'| is negative above V. Therefore |x''| <= 4 w V.
-/// - A target that steps at 60 Hz and moves at v gives the handle a speed between 0.80 v and 1.11 v: the sum
-/// of
-///   the responses w^2 t exp(-w t) v/60 to its steps.
+/// - A target that steps at 60 Hz and moves at v gives the handle a speed between 0.80 v and 1.11 v: the
+///   responses w^2 t exp(-w t) v/60 to its steps, summed.
 ///
 /// A step of length h is exact for a d that follows a fixed target; it never exceeds V, whatever h. Rotations
 /// follow the same equation, with d the rotation vector from the handle to the target in world axes.

@@ -52,8 +52,7 @@ struct Resumed {
 /// archive.
 /// @param world   assembled; on return the last World
 /// @param cost    total over all checkpoints, including those before `from`
-/// @param from    checkpoint to resume from, null at the start; observers restore their archived state from
-/// it
+/// @param from    checkpoint from which observers, too, restore their archived state; null at the start
 RunResult run_with_checkpoints(std::unique_ptr<World>& world, const RunOptions& options,
                                const CheckpointPlan& plan, CheckpointCost& cost, Resumed* from = nullptr);
 

@@ -59,8 +59,7 @@ class Simulation {
 
   /// Advances by one period; returns false at the end.
   /// @throws StepFailure where the integrator has failed, now or before; Error where the run was stopped, or
-  /// is in
-  ///   use
+  /// another call uses it
   bool step();
   /// Advances by whole periods until `seconds` of simulated time have passed, or to the end.
   /// @throws Error for a time that is not positive, and as step()

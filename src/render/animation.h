@@ -38,8 +38,7 @@ struct Fraction {
 };
 /// Approximates a duration [s].
 /// @pre seconds > 0
-/// @return fraction exact to 0.1 ms, and to at least four digits above 6.5 s; at least 0.1 ms, at most 65535
-///   s
+/// @return fraction exact to 0.1 ms, above 6.5 s to at least four digits; between 0.1 ms and 65535 s
 Fraction fraction_of(double seconds);
 
 }  // namespace palpate::render
