@@ -18,15 +18,18 @@ class Shading(InBrowser):
         super().setUpClass()
         cls.ball = Ball(cells=4, rings=16, sectors=32)
 
-    def pixels(self):
+    def pixels(self, whole=True):
+        """Returns pixels of one picture; `drawn` is then its number of triangles."""
         self.tab.value("document.getElementById('coloured').checked && "
                        "document.getElementById('coloured').click()")
         time.sleep(0.3)
-        return self.tab.value(
-            "(() => { palpateTest.draw(); const view = document.getElementById('view'), copy = "
+        pixels, self.drawn = self.tab.value(
+            f"(() => {{ palpateTest.draw({str(whole).lower()}); const view = "
+            "document.getElementById('view'), copy = "
             "document.createElement('canvas'); copy.width = 200; copy.height = 160; const pen = "
             "copy.getContext('2d', {willReadFrequently: true}); pen.drawImage(view, 0, 0, 200, 160); "
-            "return Array.from(pen.getImageData(0, 0, 200, 160).data); })()")
+            "return [Array.from(pen.getImageData(0, 0, 200, 160).data), palpateTest.triangles()]; })()")
+        return pixels
 
     def shown(self, rest, positions, query, free=True):
         """Returns pixels of the ball whose nodes are at `rest` when it is loaded, and then at `positions`."""
@@ -60,6 +63,22 @@ class Shading(InBrowser):
                 differ = [abs(a - b) for a, b in zip(as_rest, deformed)]
                 self.assertLess(sum(differ) / len(differ), 0.5)
                 self.assertLess(sum(one > 16 for one in differ) / len(differ), 0.005)
+
+    def test_a_large_skin_is_coarser_while_it_moves(self):
+        large = Ball(cells=4, rings=90, sectors=180)
+        self.assertGreater(len(large.triangles), 30000)
+        rows = [[1.2, 0.0, 0.3], [0.0, 0.8, 0.1], [0.0, 0.1, 0.9]]
+        self.ball, plain = large, self.ball
+        self.addCleanup(setattr, self, "ball", plain)
+        whole = self.shown(large.rest, self.mapped(large.rest, rows), "")
+        self.assertGreater(self.drawn, len(large.triangles))
+        coarse = self.pixels(whole=False)
+        self.assertLess(self.drawn, 20000 + 4000)  # those of tool and handle are drawn, too
+        self.assertGreater(self.drawn, 10000)
+        differ = [abs(a - b) for a, b in zip(whole, coarse)]
+        self.assertLess(sum(differ) / len(differ), 0.5)
+        self.assertLess(sum(one > 16 for one in differ) / len(differ), 0.005)
+        self.tab.wait_for(f"palpateTest.triangles() > {len(large.triangles)}", 10)  # nothing moves any more
 
     def test_displacement_is_without_rigid_motion_for_free_bodies_only(self):
         c, s = math.cos(0.5), math.sin(0.5)

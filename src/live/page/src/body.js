@@ -3,8 +3,9 @@ import {
   BufferAttribute, BufferGeometry, DataTexture, DynamicDrawUsage, FloatType, GLSL3, Matrix3, Mesh,
   NearestFilter, RGBAFormat, ShaderMaterial, Vector3,
 } from "three";
+import { coarser } from "./coarse_skin.js";
 import { withCreases } from "./creases.js";
-import { embedSkin, facing, skinAtRest } from "./embedding.js";
+import { embedSkin, skinAtRest } from "./embedding.js";
 import { NodalGradient } from "./nodal_gradient.js";
 import { screenColour } from "./ramp.js";
 import { largestDisplacement, noMotion, rigidFit } from "./rigid_fit.js";
@@ -12,12 +13,11 @@ import { fragmentShader, NODES_PER_ROW, vertexShader } from "./skin_shader.js";
 import { alongCurve } from "./triangle_order.js";
 
 /// The vertices to draw: {triangles, position, normal, corner, weight}, at rest.
-function skinOf(shape) {
-  const { tets, tet, weights, triangles } = shape, rest = skinAtRest(shape);
-  const drawn = withCreases(rest, alongCurve(rest, triangles)), count = drawn.source.length;
-  const skin = { triangles: drawn.triangles, normal: drawn.normals, position: new Float32Array(3 * count),
+function skinOf({ tets, tet, weights }, rest, { source, normals, triangles }) {
+  const count = source.length;
+  const skin = { triangles, normal: normals, position: new Float32Array(3 * count),
     corner: new Uint32Array(4 * count), weight: new Float32Array(4 * count) };
-  drawn.source.forEach((v, i) => {
+  source.forEach((v, i) => {
     skin.position.set(rest.subarray(3 * v, 3 * v + 3), 3 * i);
     skin.corner.set(tets.subarray(4 * tet[v], 4 * tet[v] + 4), 4 * i);
     skin.weight.set(weights.subarray(4 * v, 4 * v + 4), 4 * i);
@@ -32,9 +32,41 @@ function nodeTexture(nodes) {
   return texture;
 }
 
+function geometryOf({ triangles }, attributes) {
+  const geometry = new BufferGeometry();
+  geometry.setIndex(new BufferAttribute(triangles, 1));
+  for (const [name, array, size] of attributes)
+    geometry.setAttribute(name, new BufferAttribute(array, size));
+  return geometry;
+}
+
+/// A skin that the graphics card embeds in the tetrahedra.
+const embeddedGeometry = (skin) => geometryOf(skin, [["position", skin.position, 3],
+  ["normal", skin.normal, 3], ["corner", skin.corner, 4], ["weight", skin.weight, 4]]);
+
+/// A skin that the processor embeds.
+class ProcessorSkin {
+  constructor(skin) {
+    this.skin = skin;
+    this.geometry = geometryOf(skin, [["position", skin.position, 3],
+      ...["moved", "turned"].map((name) => [name, new Float32Array(skin.position.length), 3])]);
+    this.moving = ["moved", "turned"].map((name) => this.geometry.getAttribute(name));
+    for (const one of this.moving) one.setUsage(DynamicDrawUsage);
+  }
+
+  /// Moves the nodes to x, with the rows [F x] of them.
+  move(x, rows) {
+    if (x === this.x) return;
+    this.x = x;
+    embedSkin(rows, this.skin, ...this.moving.map((one) => one.array));
+    for (const one of this.moving) one.needsUpdate = true;
+  }
+}
+
 export class Body {
-  /// `onProcessor` embeds the skin in the tetrahedra here and not in the vertex shader.
-  constructor(description, shape, ramp, onProcessor) {
+  /// @param most  triangles to draw while something moves, on an emulated card; null: a graphics card embeds
+  /// and draws the whole skin
+  constructor(description, shape, ramp, most) {
     this.rest = shape.rest;
     this.attached = description.attached === true;
     this.gradient = new NodalGradient(shape.rest, shape.tets);
@@ -46,57 +78,42 @@ export class Body {
       plain: { value: screenColour(description.colour) }, opacity: { value: 1 },
     };
     const material = new ShaderMaterial({ vertexShader, fragmentShader, uniforms: this.values,
-      glslVersion: GLSL3, defines: onProcessor ? { LIT_VERTICES: 1 } : { EMBEDDED: 1 } });
-    this.mesh = new Mesh(this.makeGeometry(skinOf(shape), onProcessor), material);
+      glslVersion: GLSL3, defines: most === null ? { EMBEDDED: 1 } : {} });
+    this.mesh = new Mesh(this.makeGeometry(shape, most), material);
     this.mesh.frustumCulled = false;  // it is not where its positions at rest are
     this.move(shape.rest);
   }
 
-  makeGeometry(skin, onProcessor) {
-    const geometry = new BufferGeometry(), add = (name, array, size) => {
-      const attribute = new BufferAttribute(array, size);
-      geometry.setAttribute(name, attribute);
-      return attribute;
-    };
-    geometry.setIndex(new BufferAttribute(onProcessor ? skin.triangles.slice() : skin.triangles, 1));
-    add("position", skin.position, 3);
-    if (onProcessor) {
-      this.skin = skin;
-      this.moving = ["moved", "turned"].map((name) => add(name, new Float32Array(skin.position.length), 3));
-      for (const one of [...this.moving, geometry.index]) one.setUsage(DynamicDrawUsage);
-    } else {
-      add("normal", skin.normal, 3);
-      add("corner", skin.corner, 4);
-      add("weight", skin.weight, 4);
-    }
-    return geometry;
+  makeGeometry(shape, most) {
+    const rest = skinAtRest(shape), triangles = alongCurve(rest, shape.triangles);
+    const drawn = withCreases(rest, triangles);
+    if (most === null) return embeddedGeometry(skinOf(shape, rest, drawn));
+    this.fine = this.coarse = new ProcessorSkin(skinOf(shape, rest, drawn));
+    if (3 * most < triangles.length)
+      this.coarse = new ProcessorSkin(skinOf(shape, rest, coarser(rest, triangles, drawn, most)));
+    return this.fine.geometry;
   }
 
   /// Moves the nodes to x [m]; displacement_m is then their largest one.
   move(x) {
     this.x = x;
-    const rows = this.texture.image.data;
-    this.gradient.write(x, rows);
-    if (this.moving) {
-      embedSkin(rows, this.skin, this.moving[0].array, this.moving[1].array);
-      for (const one of this.moving) one.needsUpdate = true;
-    } else this.texture.needsUpdate = true;
+    this.gradient.write(x, this.texture.image.data);
+    if (!this.fine) this.texture.needsUpdate = true;
     const fit = this.attached ? noMotion : rigidFit(this.rest, x);
     this.values.fitRotation.value.set(...fit.rotation);
     this.values.fitTranslation.value.set(...fit.translation);
     this.displacement_m = largestDisplacement(this.rest, x, fit);
   }
 
-  /// Leaves out triangles that are not seen from `eye`: an emulated card would compute half of the skin in
-  /// vain.
-  lookFrom(eye) {
-    if (!this.moving) return;
-    const { geometry } = this.mesh, count = facing(this.skin.triangles, this.moving[0].array, eye,
-      geometry.index.array);
-    geometry.setDrawRange(0, count);
-    geometry.index.clearUpdateRanges();
-    geometry.index.addUpdateRange(0, count);
-    geometry.index.needsUpdate = true;
+  /// Whether it is drawn by fewer triangles while something moves.
+  get isCoarse() { return this.fine !== this.coarse; }
+
+  /// To be called before it is drawn, by all its triangles or by few.
+  prepare(whole) {
+    if (!this.fine) return;
+    const skin = whole ? this.fine : this.coarse;
+    skin.move(this.x, this.texture.image.data);
+    this.mesh.geometry = skin.geometry;
   }
 
   /// Colours displacement from zero to range_m, or not at all for null.
@@ -112,7 +129,7 @@ export class Body {
   }
 
   dispose() {
-    this.mesh.geometry.dispose();
+    for (const one of [this.mesh, this.fine, this.coarse]) one?.geometry.dispose();
     this.mesh.material.dispose();
     this.texture.dispose();
   }

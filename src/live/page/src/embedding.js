@@ -30,19 +30,3 @@ export function embedSkin(rows, { corner, weight, normal }, position, turned) {
     turned[p + 2] = (a1 * b2 - a2 * b1) * x + (a2 * b0 - a0 * b2) * y + (a0 * b1 - a1 * b0) * z;
   }
 }
-
-/// Writes those triangles into `out` whose front is seen from `eye`, and returns how many numbers they are.
-export function facing(triangles, x, eye, out) {
-  let count = 0;
-  for (let t = 0; t < triangles.length; t += 3) {
-    const i = triangles[t], j = triangles[t + 1], k = triangles[t + 2], a = 3 * i, b = 3 * j, c = 3 * k;
-    const x0 = x[a], y0 = x[a + 1], z0 = x[a + 2];
-    const ux = x[b] - x0, uy = x[b + 1] - y0, uz = x[b + 2] - z0;
-    const vx = x[c] - x0, vy = x[c + 1] - y0, vz = x[c + 2] - z0;
-    const away = (uy * vz - uz * vy) * (x0 - eye.x) + (uz * vx - ux * vz) * (y0 - eye.y) +
-      (ux * vy - uy * vx) * (z0 - eye.z);
-    if (away >= 0) continue;
-    out[count++] = i, out[count++] = j, out[count++] = k;
-  }
-  return count;
-}

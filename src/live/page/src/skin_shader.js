@@ -1,36 +1,39 @@
 // Shaders of a body. The skin is embedded in the tetrahedra on the graphics card, so that only nodes travel.
 //
-// On an emulated card, where fetches of textures cost more than the rest of a vertex, the processor embeds
-// the skin (embedding.js; EMBEDDED is then undefined), and light is computed per vertex (LIT_VERTICES).
+// On an emulated card, where fetches of textures cost more than the rest of a vertex, and colours more than
+// the rest of a pixel, the processor embeds the skin (embedding.js) and vertices are coloured, not pixels:
+// EMBEDDED is then undefined.
 
 /// Nodes in a row of the texture; each has three texels, the rows [F x] of its affine map.
 export const NODES_PER_ROW = 256;
 
-/// Two lights that follow the eye, one from the upper left, and a faint one from above: light of a dull
-/// surface, and gloss.  Colours are computed as squares of their screen values, close enough to linear light.
-const lightOf = `
-vec2 lightOf(vec3 n) {
+/// Colour of a point: that of its displacement, a share of the range, under two lights that follow the eye,
+/// one from the upper left, and a faint one from above: light of a dull surface, and gloss.  Colours are
+/// computed as squares of their screen values, close enough to linear light.
+const paint = `
+uniform sampler2D ramp;
+uniform float stops;
+uniform vec3 plain;
+uniform bool coloured;
+vec3 paint(float share, vec3 n) {
   const vec3 key = vec3(-0.46, 0.62, 0.64), fill = vec3(0.75, -0.1, 0.65);
   const vec3 half_way = vec3(-0.254, 0.342, 0.905);
+  vec3 own = plain;
+  if (coloured)
+    own = textureLod(ramp, vec2((0.5 + clamp(share, 0.0, 1.0) * (stops - 1.0)) / stops, 0.5), 0.0).rgb;
   float light = 0.26 + 0.72 * max(dot(n, key), 0.0) + 0.2 * max(dot(n, fill), 0.0) + 0.06 * n.y;
   float gloss = max(dot(n, half_way), 0.0);
   gloss *= gloss, gloss *= gloss, gloss *= gloss;
-  return vec2(light, 0.06 * gloss * gloss * gloss);
+  return sqrt(own * own * light + 0.06 * gloss * gloss * gloss);
 }`;
 
 export const vertexShader = `
 uniform mat3 fitRotation;
 uniform vec3 fitTranslation;
 uniform float inverseRange;
-out float share;
-#ifdef LIT_VERTICES
-out vec2 light;
-${lightOf}
-#else
-out vec3 viewNormal;
-#endif
-
 #ifdef EMBEDDED
+out float share;
+out vec3 viewNormal;
 uniform sampler2D nodes;
 in uvec4 corner;
 in vec4 weight;
@@ -49,8 +52,10 @@ void embed(out vec3 x, out vec3 n) {
            dot(cross(r0.xyz, r1.xyz), normal));
 }
 #else
+out vec3 painted;
 in vec3 moved;
 in vec3 turned;
+${paint}
 #endif
 
 void main() {
@@ -60,35 +65,32 @@ void main() {
 #else
   vec3 x = moved, n = turned;
 #endif
-  share = length(x - (fitRotation * position + fitTranslation)) * inverseRange;
-#ifdef LIT_VERTICES
-  light = lightOf(normalize(normalMatrix * n));
+  n = normalMatrix * n;
+  float s = length(x - (fitRotation * position + fitTranslation)) * inverseRange;
+#ifdef EMBEDDED
+  share = s;
+  viewNormal = n;
 #else
-  viewNormal = normalMatrix * n;
+  painted = paint(s, normalize(n));
 #endif
   gl_Position = projectionMatrix * (modelViewMatrix * vec4(x, 1.0));
 }`;
 
 export const fragmentShader = `
-uniform sampler2D ramp;
-uniform float stops;
-uniform vec3 plain;
-uniform bool coloured;
 uniform float opacity;
-in float share;
 out vec4 colour;
-#ifdef LIT_VERTICES
-in vec2 light;
-#else
+#ifdef EMBEDDED
+in float share;
 in vec3 viewNormal;
-${lightOf}
+${paint}
+#else
+in vec3 painted;
 #endif
 
 void main() {
-#ifndef LIT_VERTICES
-  vec2 light = lightOf(normalize(viewNormal));
+#ifdef EMBEDDED
+  colour = vec4(paint(share, normalize(viewNormal)), opacity);
+#else
+  colour = vec4(painted, opacity);
 #endif
-  vec3 own = plain;
-  if (coloured) own = texture(ramp, vec2((0.5 + clamp(share, 0.0, 1.0) * (stops - 1.0)) / stops, 0.5)).rgb;
-  colour = vec4(sqrt(own * own * light.x + light.y), opacity);
 }`;

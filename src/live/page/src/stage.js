@@ -4,7 +4,7 @@ import { Body } from "./body.js";
 import { Camera } from "./camera.js";
 import { HandView } from "./hand_view.js";
 import { niceAbove } from "./numbers.js";
-import { looksDifferent, Sharpness } from "./pace.js";
+import { looksDifferent } from "./visible_change.js";
 import { rampTexture } from "./ramp.js";
 import { makeSolid, place, radiusOf } from "./solids.js";
 
@@ -21,6 +21,10 @@ function isSoftware() {
 /// The range of colours shrinks only after the displacement has been smaller for so long [s].
 const SHRINK_AFTER_S = 4;
 
+/// An emulated card draws so many triangles of skins and pixels in less than a thirtieth of a second.  It
+/// draws the whole skins once nothing has moved for STILL_MS.
+const MOST_TRIANGLES = 20000, MOST_PIXELS = 1.2e6, STILL_MS = 350;
+
 /// A part of a pixel that cannot be seen.
 const QUARTER_PIXEL = 0.25;
 
@@ -32,19 +36,14 @@ export class Stage {
     this.canvas = canvas;
     const software = isSoftware();
     this.works = software !== null;
-    // for tests: the way of graphics cards in an emulated one
+    // for tests: an emulated card embeds like a real one
     this.onProcessor = software && !new URLSearchParams(location.search).has("embed");
     if (!this.works) return;
     // opaque, so that the browser need not blend it with the page
     const context = canvas.getContext("webgl2", { alpha: false, antialias: !software, stencil: false,
       powerPreference: "high-performance" });
     this.renderer = new WebGLRenderer({ canvas, context });
-    this.mostPixelRatio = software ? 1 : 2;
-    this.pixelShare = 1;
-    this.sharpness = software ? new Sharpness((share) => {
-      this.pixelShare = share;
-      this.resize();
-    }) : null;
+    this.software = software;
     this.scene = new Scene();
     this.camera = new Camera();
     this.ramp = rampTexture();
@@ -81,7 +80,9 @@ export class Stage {
   load(scene, shapes, keepView) {
     this.clear();
     this.description = scene;
-    this.bodies = scene.bodies.map((one, i) => new Body(one, shapes.bodies[i], this.ramp, this.onProcessor));
+    const triangles = scene.bodies.reduce((sum, one) => sum + one.triangles, 0);
+    this.bodies = scene.bodies.map((one, i) => new Body(one, shapes.bodies[i], this.ramp,
+      this.onProcessor ? Math.ceil((MOST_TRIANGLES * one.triangles) / triangles) : null));
     this.tools = scene.tools.map((one, i) => makeSolid({ ...one, opacity: TOOL_OPACITY }, shapes.tools[i]));
     this.bones = scene.bones.map((one, i) => makeSolid(one, shapes.bones[i]));
     const obstacles = scene.obstacles.map((one, i) => makeSolid(one, shapes.obstacles[i]));
@@ -106,7 +107,6 @@ export class Stage {
 
   /// Draws a frame, unless it looks like the one that is drawn.
   show(frame) {
-    this.sharpness?.received();
     if (!this.pending && this.frame) {
       const length_m = QUARTER_PIXEL * this.camera.metresPerPixel(this.camera.target);
       if (!looksDifferent(frame, this.frame, length_m, this.ranges)) return;
@@ -117,18 +117,19 @@ export class Stage {
 
   redraw() {
     if (this.asked || !this.works) return;
-    this.asked = requestAnimationFrame(() => this.draw());
+    this.asked = requestAnimationFrame(() => this.draw(false));
   }
 
-  draw() {
+  /// Draws the newest frame; all triangles of its bodies, or as many as an emulated card can move.
+  draw(whole = true) {
     this.asked = 0;
-    if (this.pending) {
-      this.move(this.pending);
-      this.sharpness?.drew(performance.now());
-    }
-    for (const body of this.bodies) body.lookFrom(this.camera.lens.position);
+    clearTimeout(this.still);
+    if (this.pending) this.move(this.pending);
+    for (const body of this.bodies) body.prepare(whole);
     this.renderer.render(this.scene, this.camera.lens);
     ++this.frames;
+    if (whole || !this.bodies.some((one) => one.isCoarse)) return;
+    this.still = setTimeout(() => this.draw(), STILL_MS);
   }
 
   move(frame) {
@@ -221,7 +222,8 @@ export class Stage {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(this.pixelShare * Math.min(this.mostPixelRatio, devicePixelRatio || 1));
+    const most = this.software ? Math.min(1, Math.sqrt(MOST_PIXELS / (width * height))) : 2;
+    this.renderer.setPixelRatio(Math.min(most, devicePixelRatio || 1));
     this.renderer.setSize(width, height, false);
     this.camera.resize(width, height);
     this.redraw();

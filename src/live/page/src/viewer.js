@@ -170,11 +170,12 @@ if (stage.works) {
   element("again").hidden = true;
   element("cover-text").textContent = "The view needs WebGL 2, which this browser does not offer.";
 }
-/// For tests: frames drawn so far; draws one, whose pixels can be read until the script returns; where the
-/// tool of the first hand is in the window.
+/// For tests: frames drawn so far, and triangles of the last one; draws one, whose pixels can be read until
+/// the script returns; where the tool of the first hand is in the window.
 window.palpateTest = {
   frames: () => stage.frames,
-  draw: () => stage.draw(),
+  triangles: () => stage.renderer.info.render.triangles,
+  draw: (whole) => stage.draw(whole),
   tool: () => {
     const { x, y } = stage.camera.onScreen(stage.tools[stage.toolOf(0)].position);
     const { left, top } = stage.canvas.getBoundingClientRect();
