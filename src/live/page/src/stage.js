@@ -23,7 +23,7 @@ const SHRINK_AFTER_S = 4;
 
 /// An emulated card draws so many triangles of skins and pixels in less than a thirtieth of a second.  It
 /// draws the whole skins once nothing has moved for STILL_MS.
-const MOST_TRIANGLES = 20000, MOST_PIXELS = 1.2e6, STILL_MS = 350;
+const MOST_TRIANGLES = 15000, MOST_PIXELS = 1.2e6, STILL_MS = 350;
 
 /// A part of a pixel that cannot be seen.
 const QUARTER_PIXEL = 0.25;
