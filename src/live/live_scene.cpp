@@ -17,18 +17,18 @@ std::size_t frame_values(const loop::World& world) {
 }
 
 LiveScene::LiveScene(const loop::World& world, const std::string& name_in, std::vector<Slider> sliders_in,
-                     std::shared_ptr<HandleMailbox> mailbox)
+                     HandleMailboxes mailboxes)
     : name(name_in),
       sliders(std::move(sliders_in)),
       hands(scene::hands_of(world.description).size()),
       has_hand(hands > 0),
       frames(frame_values(world)),
       strip(std::min(hands, kMostHands)),
-      handle(std::move(mailbox)),
+      handles(std::move(mailboxes)),
       moduli(world.bodies.size()) {
   if (hands > kMostHands) fail("{}: has {} hands; palpate touch shows at most {}", name, hands, kMostHands);
   const std::vector<SceneSurface> obstacles = obstacle_surfaces(world);
-  description = scene_message(world, name, sliders, obstacles);
+  description = scene_message(world, name, sliders, obstacles, handles);
   geometry = geometry_message(world, obstacles);
 }
 

@@ -23,20 +23,20 @@ struct LiveScene {
   /// @throws Error for more than kMostHands hands
   /// @param sliders  their body indices are those of the world
   LiveScene(const loop::World& world, const std::string& name, std::vector<Slider> sliders,
-            std::shared_ptr<HandleMailbox> mailbox);
+            HandleMailboxes mailboxes);
 
   std::string name;         ///< Name by which it was opened.
   std::string description;  ///< Message `scene`; the server keeps its sliders up to date.
   Bytes geometry;           ///< Message `geometry`.
   std::vector<Slider> sliders;
   std::size_t hands;         ///< Number of hands.
-  bool has_hand;             ///< Whether a viewer may move the first hand.
+  bool has_hand;             ///< Whether there is a hand; viewers may move the first.
   bool is_recorded = false;  ///< Set before it is shown.
 
-  FrameBuffer frames;                     ///< Simulation to server.
-  ForceStrip strip;                       ///< Simulation to server.
-  TripleBuffer<LiveStatus> status;        ///< Simulation to server.
-  std::shared_ptr<HandleMailbox> handle;  ///< Server to the first hand's device.
+  FrameBuffer frames;               ///< Simulation to server.
+  ForceStrip strip;                 ///< Simulation to server.
+  TripleBuffer<LiveStatus> status;  ///< Simulation to server.
+  HandleMailboxes handles;          ///< Server to the hands' devices.
   /// Server to simulation: new Young's modulus of each body [Pa], 0: unchanged.
   std::vector<std::atomic<double>> moduli;
   std::atomic<bool> watched{false};  ///< Whether anybody watches; otherwise no frames are needed.

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "live/handle_follower.h"
 #include "palpate/core/triple_buffer.h"
@@ -22,6 +23,8 @@ struct HandleTarget {
 
 /// Passes targets from the server's thread to the ticks: neither waits for the other.
 using HandleMailbox = TripleBuffer<HandleTarget>;
+/// One per hand, in the numbering of scene::hands_of(); null: the scene's device moves the hand.
+using HandleMailboxes = std::vector<std::shared_ptr<HandleMailbox>>;
 
 /// Device that viewers of the page move. The handle starts at rest and follows the newest target smoothly
 /// (HandleFollower). Without a new target it comes to rest at the last one, so its pose is always valid. It

@@ -152,7 +152,8 @@ std::vector<SceneSurface> obstacle_surfaces(const loop::World& world) {
 }
 
 std::string scene_message(const loop::World& world, const std::string& name,
-                          const std::vector<Slider>& sliders, const std::vector<SceneSurface>& obstacles) {
+                          const std::vector<Slider>& sliders, const std::vector<SceneSurface>& obstacles,
+                          const HandleMailboxes& handles) {
   const scene::Description& d = world.description;
   Box box = moving_box(world);
   json out = {{"type", "scene"}, {"protocol", 1}, {"version", store::provenance().version}};
@@ -168,7 +169,7 @@ std::string scene_message(const loop::World& world, const std::string& name,
     json tool = surface_entry(hand.name, loop::tool_surface(*hand.tool, world.folder), colours::tool(index));
     tool["hand"] = index;
     out["tools"].push_back(tool);
-    out["hands"].push_back(hand_entry(hand, index == 0));
+    out["hands"].push_back(hand_entry(hand, index < handles.size() && handles[index]));
   }
   for (const loop::Bone& bone : world.bones)
     out["bones"].push_back(surface_entry(bone.name, bone.surface, colours::kBone));

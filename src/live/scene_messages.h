@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "live/byte_writer.h"
+#include "live/page_device.h"
 #include "live/sliders.h"
 #include "palpate/loop/world.h"
 
@@ -20,9 +21,11 @@ struct SceneSurface {
 std::vector<SceneSurface> obstacle_surfaces(const loop::World& world);
 
 /// Returns the message `scene`.
-/// @param name  name by which it was opened
+/// @param name  name by which it was opened  @param sliders  in the order of the page
+/// @param obstacles  of obstacle_surfaces()  @param handles  mailboxes of the hands that viewers move
 std::string scene_message(const loop::World& world, const std::string& name,
-                          const std::vector<Slider>& sliders, const std::vector<SceneSurface>& obstacles);
+                          const std::vector<Slider>& sliders, const std::vector<SceneSurface>& obstacles,
+                          const HandleMailboxes& handles);
 
 /// Returns the message `geometry`.
 Bytes geometry_message(const loop::World& world, const std::vector<SceneSurface>& obstacles);

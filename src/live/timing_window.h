@@ -30,7 +30,7 @@ struct LiveStatus {
   double late_p99_s = 0.0;  ///< Lateness, over the last second.
   double work_p50_s = 0.0, work_p99_s = 0.0;
   double energy_j = 0.0;             ///< Kinetic and potential energy of bodies and contact.
-  double port_energy_j = 0.0;        ///< Energy that the first hand has put in.
+  double port_energy_j = 0.0;        ///< Energy that the hands have put in.
   double least_port_energy_j = 0.0;  ///< Its minimum since the start.
   std::int64_t skipped_ticks = 0;    ///< Since the start of the run.
   bool has_energy = false;

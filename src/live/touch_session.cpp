@@ -13,6 +13,7 @@
 #include "core/clock.h"
 #include "core/time_text.h"
 #include "live/pace.h"
+#include "live/page_hands.h"
 #include "live/scene_messages.h"
 #include "live/world_observer.h"
 #include "loop/choose_scheme.h"
@@ -138,14 +139,9 @@ class TouchSession {
     Pace pace(controls_, observer);
     std::vector<loop::Observer*> observers = {&observer};
     if (!has_hand) observers.push_back(&pace);
-    const auto mailbox = std::make_shared<HandleMailbox>();
-    std::vector<std::unique_ptr<device::Device>> hands;
-    if (has_hand)
-      hands.push_back(std::make_unique<PageDevice>(
-          mailbox, Pose{quaternion_of(description.tool->rotation_vector_rad), description.tool->position_m}));
-    return setup_.record
-               ? recorded_run(description, observer, std::move(observers), std::move(hands), mailbox)
-               : plain_run(description, observer, std::move(observers), std::move(hands), mailbox);
+    PageHands hands = page_hands_of(description);
+    return setup_.record ? recorded_run(description, observer, std::move(observers), std::move(hands))
+                         : plain_run(description, observer, std::move(observers), std::move(hands));
   }
 
   static double duration_of(const scene::Description& description) {
@@ -154,13 +150,13 @@ class TouchSession {
                             : kPeriods * loop::period_of(description);
   }
 
-  void show(const loop::World& world, WorldObserver& observer, const std::shared_ptr<HandleMailbox>& mailbox,
+  void show(const loop::World& world, WorldObserver& observer, const HandleMailboxes& mailboxes,
             std::optional<Recording> recording) {
     Setup plain = setup_;
     plain.values.clear();
     const std::vector<std::pair<std::string, double>> values(setup_.values.begin(), setup_.values.end());
     const auto live = std::make_shared<LiveScene>(
-        world, setup_.scene, sliders_of(options_.load(plain.scene, overrides_of(plain)), values), mailbox);
+        world, setup_.scene, sliders_of(options_.load(plain.scene, overrides_of(plain)), values), mailboxes);
     live->is_recorded = recording.has_value();
     observer.attach(live, world);
     broadcast_.change([&](SessionState& state) {
@@ -172,11 +168,10 @@ class TouchSession {
   }
 
   bool plain_run(const scene::Description& description, WorldObserver& observer,
-                 std::vector<loop::Observer*> observers, std::vector<std::unique_ptr<device::Device>> hands,
-                 const std::shared_ptr<HandleMailbox>& mailbox) {
-    const auto world = loop::assemble(description, std::move(hands));
+                 std::vector<loop::Observer*> observers, PageHands hands) {
+    const auto world = loop::assemble(description, std::move(hands.devices));
     loop::check_clock(*world, description.tool.has_value());
-    show(*world, observer, mailbox, {});
+    show(*world, observer, hands.mailboxes, {});
     loop::RunOptions run;
     run.duration_s = duration_of(description);
     run.real_time = description.tool.has_value();
@@ -191,9 +186,7 @@ class TouchSession {
   }
 
   bool recorded_run(scene::Description description, WorldObserver& observer,
-                    std::vector<loop::Observer*> observers,
-                    std::vector<std::unique_ptr<device::Device>> hands,
-                    const std::shared_ptr<HandleMailbox>& mailbox) {
+                    std::vector<loop::Observer*> observers, PageHands hands) {
     if (!description.record) description.record = RecordSpec{.states = !description.tool.has_value()};
     description.record->forces = description.tool.has_value();
     session::Options options;
@@ -204,8 +197,8 @@ class TouchSession {
     options.real_time = description.tool.has_value();
     options.command = "palpate touch " + setup_.scene;
     session::RunSession run(options, description, nullptr,
-                            {std::move(hands), std::move(observers), &controls_.pause()});
-    show(run.world(), observer, mailbox, Recording{options.folder, wall_seconds()});
+                            {std::move(hands.devices), std::move(observers), &controls_.pause()});
+    show(run.world(), observer, hands.mailboxes, Recording{options.folder, wall_seconds()});
     options_.report("recording into " + options.folder);
     session::Callbacks callbacks;
     callbacks.stop = &controls_.leave();

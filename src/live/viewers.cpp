@@ -73,9 +73,10 @@ std::string Viewers::act(int viewer, const Message& message) {
                                  return {};
                                },
                                [&](const MoveHandle& move) -> std::string {
-                                 if (holder_ != viewer || move.hand != 0 || !scene_ || !scene_->has_hand)
+                                 if (holder_ != viewer || !scene_ || move.hand >= scene_->handles.size())
                                    return {};
-                                 scene_->handle->publish(HandleTarget::of(move.target, move.switches));
+                                 if (const auto& handle = scene_->handles[move.hand])
+                                   handle->publish(HandleTarget::of(move.target, move.switches));
                                  return {};
                                },
                                [&](const SetValue& value) { return guarded([&] { return set(value); }); },

@@ -43,7 +43,8 @@ void WorldObserver::attach(std::shared_ptr<LiveScene> scene, const loop::World& 
     hands_[i].tick.handle = hands_[i].tick.tool;
   }
   timing_ = TimingWindow(d.tool ? d.tool->tick_s : loop::period_of(d));
-  port_ = device::PassivityObserver();
+  ports_.assign(hands_.size(), device::PassivityObserver());
+  port_energy_ = least_port_energy_ = 0.0;
   may_compute_energy_ = d.exchange.scheme != scene::ExchangeScheme::kSingleRate;
   last_frame_ = last_status_ = -1.0;
   next_energy_ = 0.0;
@@ -61,9 +62,13 @@ void WorldObserver::tick_of(std::size_t hand, const loop::TickRecord& tick) {
   hands_[hand].tick = tick;
   hands_[hand].ticked = true;
   scene_->strip.add(hand, tick.time, tick.device);
-  if (hand > 0) return;
-  port_.hold(tick.motors);
-  port_.sample(tick.time, tick.handle);
+  device::PassivityObserver& port = ports_[hand];
+  port_energy_ -= port.energy();
+  port.hold(tick.motors);
+  port.sample(tick.time, tick.handle);
+  port_energy_ += port.energy();
+  // the hands of one tick come one after the other, and energy passes between them
+  if (hand + 1 == ports_.size()) least_port_energy_ = std::min(least_port_energy_, port_energy_);
 }
 
 void WorldObserver::timed(const loop::TickTiming& timing) {
@@ -118,8 +123,8 @@ void WorldObserver::write_status(loop::World& world, double t) {
   update_energy(world);
   timing_.write(status_);
   status_.time_s = t;
-  status_.port_energy_j = port_.energy();
-  status_.least_port_energy_j = port_.least_energy();
+  status_.port_energy_j = port_energy_;
+  status_.least_port_energy_j = least_port_energy_;
   scene_->status.publish(status_);
   last_status_ = t;
 }

@@ -36,7 +36,8 @@ class WorldObserver : public loop::Observer {
 
   std::shared_ptr<LiveScene> scene_;
   std::vector<HandState> hands_;
-  device::PassivityObserver port_;
+  std::vector<device::PassivityObserver> ports_;        ///< One per hand.
+  double port_energy_ = 0.0, least_port_energy_ = 0.0;  ///< Sum over the hands [J], and its minimum.
   TimingWindow timing_{1e-3};
   bool may_compute_energy_ = false;
   double last_frame_ = -1.0, last_status_ = -1.0, next_energy_ = 0.0;

@@ -43,7 +43,8 @@ struct Session {
     hands.push_back(
         std::make_unique<PageDevice>(mailbox, Pose{Quat::Identity(), description.tool->position_m}));
     world = loop::assemble(description, std::move(hands));
-    scene = std::make_shared<LiveScene>(*world, "small", sliders_of(description, {}), mailbox);
+    scene =
+        std::make_shared<LiveScene>(*world, "small", sliders_of(description, {}), HandleMailboxes{mailbox});
     scene->watched = true;
     observer.attach(scene, *world);
   }
@@ -89,6 +90,29 @@ TEST_P(Observed, ARunIsFollowedWithoutAllocation) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, Observed, testing::Values("partitioned", "single_rate"));
+
+TEST(WorldObserver, TheEnergyThatHandsPutInIsTheirSum) {
+  Session session({});
+  WorldObserver observer;
+  scene::Description two = small_scene(kSecondHand);
+  const auto world = loop::assemble(two);
+  const auto scene = std::make_shared<LiveScene>(*world, "two", sliders_of(two, {}), HandleMailboxes{});
+  observer.attach(scene, *world);
+  // one hand puts 0.3 J in and the other takes 0.1 J out in the same tick
+  const auto tick = [&](std::size_t hand, double time, double z, double force) {
+    loop::TickRecord record;
+    record.time = time;
+    record.handle.translation = {0.0, 0.0, z};
+    record.motors.force = {0.0, 0.0, force};
+    observer.tick_of(hand, record);
+  };
+  for (std::size_t hand : {0, 1}) tick(hand, 0.0, 0.0, 0.0);
+  tick(0, 1e-3, -0.1, 3.0);
+  tick(1, 1e-3, 0.05, 2.0);
+  observer.period(*world, 0.0);
+  EXPECT_NEAR(scene->status.latest().port_energy_j, 0.3 - 0.1, 1e-12);
+  EXPECT_EQ(scene->status.latest().least_port_energy_j, 0.0);
+}
 
 TEST(WorldObserver, WithoutViewersOnlyTheFirstFrameIsWritten) {
   Session session({});

@@ -18,7 +18,8 @@ TEST(SceneMessages, CountsAreThoseOfTheGeometry) {
       {"obstacle=[{name=\"floor\",type=\"plane\",normal=[0.0,0.0,1.0],position_m=[0.0,0.0,-0.05]}]"});
   const auto world = loop::assemble(description);
   const std::vector<SceneSurface> obstacles = obstacle_surfaces(*world);
-  const json message = json::parse(scene_message(*world, "small", sliders_of(description, {}), obstacles));
+  const json message = json::parse(scene_message(*world, "small", sliders_of(description, {}), obstacles,
+                                                 {std::make_shared<HandleMailbox>()}));
   EXPECT_EQ(message["type"], "scene");
   EXPECT_EQ(message["protocol"], 1);
   EXPECT_EQ(message["scene"], "small");

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """`palpate touch` as a viewer sees it: scenes, frames, the handle, sliders, recordings, slow viewers."""
 import json
+import math
 import shutil
 import subprocess
 import sys
@@ -130,6 +131,35 @@ class Session(unittest.TestCase):
         self.assertIn("youngs_modulus_pa = 20000", (folder / "scene.toml").read_text())
         done = subprocess.run([str(PROGRAM), "replay", str(folder)], cwd=self.folder, capture_output=True,
                               text=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("bitwise", done.stdout)
+
+    def test_both_hands_of_a_scene_are_moved_and_replayed_bitwise(self):
+        server = self.serve("two-hands")
+        viewer = self.watch(server)
+        self.assertEqual([one["live"] for one in viewer.scene["hands"]], [True, True])
+        viewer.send(type="record", on=True)
+        viewer.until(lambda: viewer.states[-1]["recording"] and len(viewer.frames) >= 2, 60)
+        viewer.send(type="take")
+        viewer.until(lambda: viewer.states[-1]["holder"] == "you")
+        starts = [hand["pose"][:3] for hand in viewer.frames[-1]["hands"]]
+        for i in range(1, 37):
+            for hand, (x, y, z) in enumerate(starts):
+                into = -1 if x > 0 else 1
+                viewer.send(**{**PULL, "hand": hand}, type="handle",
+                            position=[x + into * 0.014 * i / 36, y, z])
+            viewer.listen(1 / 60)
+        def arrived():
+            return all(abs(hand["pose"][0] - start[0] + math.copysign(0.014, start[0])) < 1e-5
+                       for hand, start in zip(viewer.frames[-1]["hands"], starts))
+        viewer.until(arrived)
+        pressed = viewer.frames[-1]["hands"]
+        for hand, (x, _, _) in enumerate(starts):
+            self.assertGreater(math.copysign(1, x) * pressed[hand]["force"][0], 0.2)
+        viewer.send(type="record", on=False)
+        viewer.until(lambda: any(text["type"] == "recorded" for text in viewer.texts), 60)
+        done = subprocess.run([str(PROGRAM), "replay", "out/two-hands-touch-1"], cwd=self.folder,
+                              capture_output=True, text=True, timeout=120)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn("bitwise", done.stdout)
 

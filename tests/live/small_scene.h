@@ -39,4 +39,9 @@ step_s = 0.01
                      "small.toml", overrides);
 }
 
+/// A second hand beside the ball: overrides of small_scene().
+inline const std::vector<std::string> kSecondHand = {
+    "hand=[{name=\"left\",tool={radius_m=0.01,mass_kg=0.01,position_m=[-0.06,0.0,0.0]},"
+    "device={type=\"script\",keyframe=[{time_s=0.0,position_m=[-0.06,0.0,0.0]}]}}]"};
+
 }  // namespace palpate::live

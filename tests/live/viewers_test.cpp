@@ -1,7 +1,9 @@
 #include "live/viewers.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "live/page_hands.h"
 #include "palpate/loop/world.h"
 #include "small_scene.h"
 
@@ -14,7 +16,8 @@ class ViewersOfAScene : public testing::Test {
     const scene::Description description = small_scene();
     const auto world = loop::assemble(description);
     mailbox = std::make_shared<HandleMailbox>();
-    scene = std::make_shared<LiveScene>(*world, "small", sliders_of(description, {}), mailbox);
+    scene =
+        std::make_shared<LiveScene>(*world, "small", sliders_of(description, {}), HandleMailboxes{mailbox});
     viewers.show(scene);
   }
   std::string send(int viewer, std::string_view text) { return viewers.receive(viewer, text, now).notice; }
@@ -53,6 +56,44 @@ TEST_F(ViewersOfAScene, OnlyTheHolderMovesTheHandle) {
   EXPECT_EQ(send(two, R"({"type":"take"})"), "");
   send(two, R"({"type":"drop"})");
   EXPECT_STREQ(viewers.place_of(two).holder, "nobody");
+}
+
+TEST_F(ViewersOfAScene, TheHolderMovesEveryHandThatThePageMoves) {
+  const auto left = std::make_shared<HandleMailbox>();
+  scene->handles = {mailbox, nullptr, left};
+  const int one = viewers.add();
+  send(one, R"({"type":"take"})");
+  send(one, R"({"type":"handle","hand":2,"position":[0,0,0.7],"rotation":[1,0,0,0]})");
+  EXPECT_FALSE(moved());
+  EXPECT_EQ(left->latest().position[2], 0.7);
+  for (const char* hand : {"1", "3", "255"})  // the device of the scene moves it; there is none
+    EXPECT_EQ(send(one, fmt::format(R"({{"type":"handle","hand":{},"position":[0,0,0.9],)"
+                                    R"("rotation":[1,0,0,0]}})",
+                                    hand)),
+              "");
+  EXPECT_EQ(left->latest().position[2], 0.7);
+  EXPECT_FALSE(moved());
+  EXPECT_EQ(viewers.bad(), 0);
+}
+
+TEST(PageHands, EveryHandIsThePagesUnlessItIsMovedFromOutside) {
+  const PageHands both = page_hands_of(small_scene(kSecondHand));
+  ASSERT_EQ(both.devices.size(), 2U);
+  ASSERT_EQ(both.mailboxes.size(), 2U);
+  EXPECT_EQ(both.devices[1]->sample(0.0).pose.translation, Vec3(-0.06, 0.0, 0.0));
+  both.mailboxes[1]->publish(HandleTarget::of({Quat::Identity(), {-0.05, 0.0, 0.0}}, 0));
+  for (int i = 1; i <= 500; ++i) both.devices[1]->sample(1e-3 * i);
+  EXPECT_NEAR(both.devices[1]->position().x(), -0.05, 1e-9);
+  EXPECT_EQ(both.devices[0]->sample(0.5).pose.translation, Vec3(0.0, 0.0, 0.045));
+
+  scene::Description outside = small_scene(kSecondHand);
+  outside.device->type = outside.hands[0].device.type = "udp";
+  outside.hands[0].device.port = 47000;
+  const PageHands first = page_hands_of(outside);
+  EXPECT_TRUE(first.devices[0] && first.mailboxes[0]) << "the page moves the first hand always";
+  ASSERT_EQ(first.devices.size(), 2U);
+  EXPECT_FALSE(first.devices[1] || first.mailboxes[1]);
+  EXPECT_TRUE(page_hands_of(small_scene({"tool.radius_m=0.01"})).devices[0]->is_live());
 }
 
 TEST_F(ViewersOfAScene, WhileSomebodyHoldsTheHandleOthersChangeNothing) {
