@@ -42,16 +42,21 @@ HttpReply picture(std::string_view name, const std::vector<SceneEntry>& scenes) 
 
 }  // namespace
 
-const std::vector<HttpHeader>& http_headers() {
-  static const std::vector<HttpHeader> headers = {
-      {"content-security-policy:",
-       "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
-       "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
-      {"x-content-type-options:", "nosniff"},
-      {"referrer-policy:", "no-referrer"},
-      {"cross-origin-resource-policy:", "same-origin"},
-      {"cache-control:", "no-store"}};
-  return headers;
+const std::vector<HttpHeader>& http_headers(bool in_frames) {
+  const auto with_ancestors = [](const std::string& ancestors) {
+    return std::vector<HttpHeader>{
+        {"content-security-policy:",
+         "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+         "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors " +
+             ancestors},
+        {"x-content-type-options:", "nosniff"},
+        {"referrer-policy:", "no-referrer"},
+        {"cross-origin-resource-policy:", "same-origin"},
+        {"cache-control:", "no-store"}};
+  };
+  static const std::vector<HttpHeader> alone = with_ancestors("'none'");
+  static const std::vector<HttpHeader> framed = with_ancestors("http://127.0.0.1:* http://localhost:*");
+  return in_frames ? framed : alone;
 }
 
 HttpReply reply_to(std::string_view path, bool has_token, const std::string& token,

@@ -20,11 +20,15 @@ struct HttpReply {
   std::string_view content() const { return text.empty() ? body : std::string_view(text); }
 };
 
-/// Headers of every reply, by name (with the colon) and value: no foreign content, no caching, no referrer.
+/// Header of a reply, by name (with the colon) and value.
 struct HttpHeader {
-  const char *name, *value;
+  const char* name;
+  std::string value;
 };
-const std::vector<HttpHeader>& http_headers();
+/// Returns the headers of every reply: no foreign content, no caching, no referrer.
+/// @param in_frames  whether pages of this machine (127.0.0.1, localhost) may show the page in a frame;
+/// otherwise no page may
+const std::vector<HttpHeader>& http_headers(bool in_frames);
 
 /// Returns the reply to a request.
 /// @param path  decoded path  @param has_token  whether the request has the right token

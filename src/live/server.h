@@ -16,6 +16,7 @@ struct ServerOptions {
   std::string address = "127.0.0.1";  ///< IPv4 address to listen on.
   int port = 0;                       ///< 0: any free port.
   std::vector<SceneEntry> scenes;     ///< Scenes that viewers may open.
+  bool in_frames = false;             ///< Whether pages of this machine may show the page in a frame.
   ViewerLimits limits = {};
 };
 

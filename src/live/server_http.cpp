@@ -65,10 +65,10 @@ int Server::Impl::begin_reply(lws* wsi, std::string_view path) {
   unsigned char *const start = head.data() + LWS_PRE, *at = start, *const end = head.data() + head.size() - 1;
   const HttpReply& reply = transfer.reply;
   if (lws_add_http_common_headers(wsi, reply.status, reply.type, reply.content().size(), &at, end)) return 1;
-  for (const HttpHeader& one : http_headers())
+  for (const HttpHeader& one : http_headers(options.in_frames))
     if (lws_add_http_header_by_name(wsi, reinterpret_cast<const unsigned char*>(one.name),
-                                    reinterpret_cast<const unsigned char*>(one.value),
-                                    static_cast<int>(std::strlen(one.value)), &at, end))
+                                    reinterpret_cast<const unsigned char*>(one.value.c_str()),
+                                    static_cast<int>(one.value.size()), &at, end))
       return 1;
   if (lws_finalize_write_http_header(wsi, start, &at, end)) return 1;
   lws_callback_on_writable(wsi);

@@ -19,6 +19,20 @@ TEST(Http, PagesOfTheSceneNeedTheToken) {
   EXPECT_NE(reply_to("/", true, "t", scenes).content().find("viewer.js"), std::string_view::npos);
 }
 
+TEST(Http, OnlyPagesOfThisMachineMayFrameThePageAndOnlyOnRequest) {
+  const auto policy = [](bool in_frames) {
+    for (const HttpHeader& one : http_headers(in_frames))
+      if (std::string_view(one.name) == "content-security-policy:") return one.value;
+    return std::string();
+  };
+  const std::string alone = policy(false), framed = policy(true);
+  EXPECT_TRUE(alone.ends_with("; frame-ancestors 'none'")) << alone;
+  EXPECT_TRUE(framed.ends_with("; frame-ancestors http://127.0.0.1:* http://localhost:*")) << framed;
+  EXPECT_EQ(alone.substr(0, alone.find("frame-ancestors")), framed.substr(0, framed.find("frame-ancestors")));
+  EXPECT_TRUE(alone.starts_with("default-src 'none'; script-src 'self'; style-src 'self'; "));
+  EXPECT_EQ(http_headers(false).size(), http_headers(true).size());
+}
+
 TEST(Http, TheListOfScenesIsJson) {
   const std::vector<SceneEntry> scenes = {{"a", "A \"ball\".", ""}, {"b", "", "/nowhere.png"}};
   EXPECT_EQ(reply_to("/scenes", true, "t", scenes).content(),

@@ -11,7 +11,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from built import PACKAGE, TREE
+from built import PACKAGE, PROGRAM, TREE
 
 sys.path.insert(0, str(TREE / "tests/docs"))
 from pages import fences  # noqa: E402
@@ -20,6 +20,7 @@ try:
     import matplotlib
 except ImportError:
     matplotlib = None
+HAS_TOUCH = (PROGRAM.parent / "palpate-touch").is_file()
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGE), "MPLBACKEND": "Agg"}
 
 
@@ -54,7 +55,7 @@ class Page(unittest.TestCase):
             for code, output in self.found:
                 with self.subTest(code=code):
                     self.assertLessEqual(len(re.findall(r"^(?!import|from)", code.strip(), re.M)), 5)
-                    if "plot" in code and matplotlib is None:
+                    if "plot" in code and matplotlib is None or "touch" in code and not HAS_TOUCH:
                         continue
                     self.assertEqual(run(code, folder), output or "")
             if matplotlib is not None:
@@ -120,6 +121,8 @@ class Notebook(unittest.TestCase):
         self.assertEqual(notebook["nbformat"], 4)
         cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
         self.assertGreaterEqual(len(cells), 5)
+        if not HAS_TOUCH:
+            cells = [cell for cell in cells if "view" not in cell]
         self.assertEqual(len({cell["id"] for cell in notebook["cells"]}), len(notebook["cells"]))
         for cell in notebook["cells"]:  # its stored output is not executed
             self.assertEqual(cell.get("outputs", []), [])
@@ -134,6 +137,9 @@ class Notebook(unittest.TestCase):
         self.assertGreater(scope["pressing"].sum(), 1)
         self.assertGreater(scope["forces"][4e4], 1.1 * scope["forces"][1e4])
         self.assertEqual(len(scope["axes"].get_lines()), 2)
+        if HAS_TOUCH:
+            self.assertRegex(scope["view"].address, r"^http://127\.0\.0\.1:\d+/\?token=")
+            self.assertEqual((scope["view"].running, scope["view"].error), (False, ""))
 
     def test_a_cell_that_fails_is_found(self):
         with self.assertRaises(NameError):

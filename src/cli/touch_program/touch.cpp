@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "browser.h"
 #include "cli/option_checks.h"
@@ -15,6 +16,7 @@
 #include "cli/program.h"
 #include "cli/scene_of.h"
 #include "cli/stop.h"
+#include "input_end.h"
 #include "live/touch_session.h"
 
 namespace palpate::cli {
@@ -25,7 +27,7 @@ struct TouchArguments {
   SceneArguments scene;
   std::string address = "127.0.0.1", scheme;
   int port = 0;
-  bool no_browser = false;
+  bool no_browser = false, notebook = false;
 };
 
 constexpr const char* kTouchFooter = R"(Examples:
@@ -72,7 +74,10 @@ void announce(const live::Server& server, ForwardingPage& page, bool no_browser)
 
 int touch(const TouchArguments& arguments) {
   ForwardingPage page;
+  std::optional<InputEnd> input_end;
+  if (arguments.notebook) input_end.emplace();
   live::TouchOptions options;
+  options.server.in_frames = arguments.notebook;
   options.server.address = arguments.address;
   options.server.port = arguments.port;
   options.server.scenes = entries(arguments.scene.scene);
@@ -85,7 +90,9 @@ int touch(const TouchArguments& arguments) {
     one.overrides = overrides;
     return scene_of(one);
   };
-  options.started = [&](const live::Server& server) { announce(server, page, arguments.no_browser); };
+  options.started = [&](const live::Server& server) {
+    announce(server, page, arguments.no_browser || arguments.notebook);
+  };
   options.report = print_line;
   options.stop = &stop_flag();
   live::run_touch_session(std::move(options));
@@ -124,6 +131,10 @@ void add_touch(CLI::App& app, Invocation& invocation) {
       ->type_name("ADDRESS")
       ->capture_default_str();
   command->add_flag("--no-browser", arguments->no_browser, "print the address only");
+  command->add_flag(
+      "--notebook", arguments->notebook,
+      "for palpate.touch in Python: prints the address only, lets pages of this machine show the "
+      "page in a frame, and ends with the standard input");
   command->footer(kTouchFooter);
   command->callback([arguments, &invocation] {
     invocation.factorises = true;

@@ -20,6 +20,7 @@ Run a scene with the files of `palpate run`, in virtual or in real time:
 Scenes        load, Scene, make_model (models of surfaces)
 Simulations   Simulation, and its Body, Bone, Hand, Contact; HandlePose for a function that moves a hand
 Runs          run, resume, movie; Run
+Live          touch (a scene in a cell of a notebook, whose tool the mouse moves); Touch
 Studies       compare, validate; Comparison, Measurement
 Errors        Error (invalid input), IntegratorError (a step failed)
 
@@ -35,7 +36,8 @@ with settings_of_the_program():
 from ._compare import Comparison, compare
 from ._model import make_model
 from ._run import Run, movie, resume, run
+from ._touch import Touch, touch
 
 __all__ = ["Body", "Bone", "Comparison", "Contact", "Error", "Hand", "HandlePose", "IntegratorError",
-           "Measurement", "Run", "Scene", "Simulation", "compare", "load", "make_model", "movie", "resume",
-           "run", "validate"]
+           "Measurement", "Run", "Scene", "Simulation", "Touch", "compare", "load", "make_model", "movie",
+           "resume", "run", "touch", "validate"]

@@ -1,26 +1,12 @@
-"""Layered models from surfaces, made by the program `palpate model`, which stands outside of this module."""
+"""Layered models from surfaces, made by the program `palpate model`."""
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 from pathlib import Path
 from typing import Any
 
-from ._palpate import Error
-
-PACKAGE = Path(__file__).absolute().parent
-
-
-def _program() -> str:
-    """Returns the path of the program: $PALPATE_PROGRAM, the one of this build, or the one on the path."""
-    named = os.environ.get("PALPATE_PROGRAM", "")
-    built = PACKAGE.parents[1] / "bin" / "palpate"
-    found = named or (str(built) if built.is_file() else shutil.which("palpate") or "")
-    if not found or not os.path.exists(found):
-        raise Error("make_model: the program palpate is missing" + (f" ({named})" if named else "") +
-                    "; install it, or set PALPATE_PROGRAM to its path, such as build/release/bin/palpate")
-    return found
+from ._program import error_of, program
 
 
 def _arguments(options: dict[str, Any]) -> list[str]:
@@ -45,9 +31,8 @@ def make_model(surface: str | os.PathLike[str], file: str | os.PathLike[str] = "
     Raises Error if the surface or the mesh is rejected, and if the program is missing.
     """
     path = Path(file) if os.fspath(file) else Path(Path(surface).stem + ".h5")
-    done = subprocess.run([_program(), "model", os.fspath(surface), "-o", str(path), "--quiet",
+    done = subprocess.run([program("make_model"), "model", os.fspath(surface), "-o", str(path), "--quiet",
                            *_arguments(options)], capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        lines = done.stderr.strip().splitlines() or [f"palpate model ended with status {done.returncode}"]
-        raise Error(lines[-1].removeprefix("palpate: error: ").removeprefix("palpate-model: error: "))
+        raise error_of(done.stderr, "palpate model", done.returncode)
     return path
