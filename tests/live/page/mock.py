@@ -28,16 +28,20 @@ TOOL_RADIUS_M, TICK_S = 0.012, 1e-3
 
 
 class Scene:
-    """One ball, one tool, one hand; what the viewers did to them."""
+    """One ball, one tool, one hand; what the viewers did to them. Further hands touch nothing."""
 
-    def __init__(self, ball, free=False, hand=True):
-        self.ball, self.free, self.hand = ball, free, hand
+    def __init__(self, ball, free=False, hand=True, more_hands=(), live=(True, True)):
+        self.ball, self.free, self.hand, self.live = ball, free, hand, live
         self.tool_shape = sphere(TOOL_RADIUS_M, 16, 32)
         self.start = [0.0, -1.5 * ball.radius, 0.0]
-        self.pose = [*self.start, 1.0, 0.0, 0.0, 0.0]
+        self.poses = [[*at, 1.0, 0.0, 0.0, 0.0] for at in (self.start, *more_hands)]
         self.positions = None  # replaces the dent
         self.stiffness = COUPLING_N_M
         self.touch()
+
+    @property
+    def pose(self):
+        return self.poses[0]
 
     def touch(self):
         nodes, depth, into = self.ball.dented(self.pose[:3], TOOL_RADIUS_M)
@@ -54,11 +58,13 @@ class Scene:
                 "bounds": {"min": [-self.ball.radius, -most, -self.ball.radius],
                            "max": [self.ball.radius] * 3},
                 "bodies": [self.ball.description(attached=not self.free)],
-                "tools": [{"name": "tool", "hand": 0, "vertices": len(vertices),
-                           "triangles": len(triangles), "colour": "#2f6db3"}],
+                "tools": [{"name": "tool", "hand": hand, "vertices": len(vertices),
+                           "triangles": len(triangles), "colour": colour}
+                          for hand, colour in zip(range(len(self.poses)), ("#2f6db3", "#2f9e63"))],
                 "bones": [], "obstacles": [],
-                "hands": [{"name": "hand", "live": True, "max_force_n": 3.3, "stiffness_n_m": 1000,
-                           "workspace": {"center": [0, 0, 0], "radius": 3 * self.ball.radius}}],
+                "hands": [{"name": name, "live": live, "max_force_n": 3.3, "stiffness_n_m": 1000,
+                           "workspace": {"center": [0, 0, 0], "radius": 3 * self.ball.radius}}
+                          for _, name, live in zip(self.poses, ("hand", "second"), self.live)],
                 "sliders": [{"key": "tool.coupling.stiffness_n_m", "label": "Coupling stiffness",
                              "unit": "N/m", "value": self.stiffness, "min": 10, "max": 3000,
                              "logarithmic": True}]}
@@ -69,20 +75,25 @@ class Scene:
         vertices, triangles = self.tool_shape
         body = self.ball.geometry()
         if self.hand:
-            body += (packed("f", itertools.chain.from_iterable(vertices)) +
-                     packed("I", itertools.chain.from_iterable(triangles)))
+            body += len(self.poses) * (packed("f", itertools.chain.from_iterable(vertices)) +
+                                       packed("I", itertools.chain.from_iterable(triangles)))
         return struct.pack("<II", GEOMETRY, 8 + len(body)) + body
 
     def frame(self, time_s, since_s):
         samples = max(1, min(20, int(200 * (time_s - since_s))))
-        strip = b"".join(packed("f", [-(samples - 1 - s) / 200, *self.force, 0.0, 0.0, 1e-3 * self.depth])
-                         for s in range(samples))
+        wrench = [*self.force, 0.0, 0.0, 1e-3 * self.depth]
+        strip = b""
+        for s in range(samples):
+            before = -(samples - 1 - s) / 200
+            strip += packed("f", [before, *wrench, *([before, *6 * [0.0]] * (len(self.poses) - 1))])
         body = (struct.pack("<dI", time_s, samples) +
                 packed("f", itertools.chain.from_iterable(self.nodes)))
         if self.hand:
-            body += (packed("f", self.tool) +
-                     packed("f", [*self.pose, *self.force, 0.0, 0.0, 1e-3 * self.depth]) +
-                     struct.pack("<I", 1 | (4 if self.depth > 0 else 0)) + strip)
+            more = self.poses[1:]
+            body += packed("f", itertools.chain(self.tool, *more))
+            body += packed("f", [*self.pose, *wrench]) + struct.pack("<I", 1 | (4 if self.depth > 0 else 0))
+            body += b"".join(packed("f", [*pose, *6 * [0.0]]) + struct.pack("<I", 1) for pose in more)
+            body += strip
         return struct.pack("<II", FRAME, 8 + len(body)) + body
 
 
@@ -221,7 +232,7 @@ class Mock:
         elif kind == "drop" and self.holder is viewer:
             self.holder = None
         elif kind == "handle" and self.holder is viewer:
-            self.scene.pose = [*message["position"], *message["rotation"]]
+            self.scene.poses[message["hand"]] = [*message["position"], *message["rotation"]]
             self.scene.touch()
         elif kind == "pause":
             self.running = not message["on"]

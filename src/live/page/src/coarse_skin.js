@@ -16,7 +16,7 @@ function normalsOf(x, triangles) {
   return { normals, area };
 }
 
-/// Returns the number of the cluster of each vertex, and the clusters with their counts and sums of positions.
+/// Returns the number of the cluster of each vertex, and the clusters, with counts and sums of positions.
 /// A cluster has the vertices in a cell of a grid whose normals are within 90 degrees of that of the first
 /// one, so that a thin part keeps both sides.
 function clustersOf(x, normals, size) {

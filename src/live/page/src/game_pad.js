@@ -1,6 +1,7 @@
 // The first game pad of the standard layout (W3C Gamepad).
 
-const DEAD = 0.12, TAKES = 0, TURNS = 4;  // the lowest button of the right hand; the left shoulder
+/// Buttons: the lowest and the right one of the right hand, the left shoulder.
+const DEAD = 0.12, TAKES = 0, CHOOSES = 1, TURNS = 4;
 const RUMBLE_MS = 90;
 
 /// The force of a stick grows with the square of its way, beyond the middle where it does not rest exactly.
@@ -9,17 +10,18 @@ function shaped(value) {
   return Math.sign(value) * size * size;
 }
 
-let wasPressed = false;
+let down = new Set();
 
-/// {left: [right, up], right: [right, up], pressed: the take button was just pressed, turns, actuator}
+/// {left: [right, up], right: [right, up], takes, chooses: whether that button was just pressed, turns,
+/// actuator}
 export function readGamePad() {
   const pad = [...navigator.getGamepads()].find((one) => one && one.connected && one.axes.length >= 4);
   if (!pad) return null;
-  const [a, b, c, d] = pad.axes.map(shaped), isPressed = Boolean(pad.buttons[TAKES]?.pressed);
-  const pressed = isPressed && !wasPressed;
-  wasPressed = isPressed;
-  return { left: [a, -b], right: [c, -d], pressed, turns: Boolean(pad.buttons[TURNS]?.pressed),
-    actuator: pad.vibrationActuator };
+  const [a, b, c, d] = pad.axes.map(shaped), before = down;
+  down = new Set([TAKES, CHOOSES, TURNS].filter((one) => pad.buttons[one]?.pressed));
+  const begins = (button) => down.has(button) && !before.has(button);
+  return { left: [a, -b], right: [c, -d], takes: begins(TAKES), chooses: begins(CHOOSES),
+    turns: down.has(TURNS), actuator: pad.vibrationActuator };
 }
 
 let rumbled_ms = 0;

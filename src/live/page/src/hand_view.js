@@ -89,6 +89,11 @@ export class HandView {
     this.turn = new Quaternion();
   }
 
+  /// Shows that this is the hand that the page moves, or one of the others.
+  choose(isChosen) {
+    this.material.opacity = isChosen ? 0.9 : 0.3;
+  }
+
   colour({ handle, force, torque }) {
     this.material.color.set(handle);
     this.springMaterial.color.set(handle);

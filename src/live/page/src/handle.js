@@ -1,4 +1,5 @@
-// The target of the handle, moved by whatever device the page has, and sent to the server while it is held.
+// The target of the chosen hand's handle, moved by whatever device the page has, and sent to the server while
+// the handles are held.
 import { Quaternion, Vector3 } from "three";
 
 /// At most 125 messages per second; the server accepts 240.
@@ -8,7 +9,8 @@ export class Handle {
   constructor(send) {
     this.send = send;
     this.holder = "nobody";
-    this.hand = 0;
+    this.hand = 0;  // -1: the scene has none
+    this.hands = [];
     this.position = new Vector3();
     this.rotation = new Quaternion();
     this.known = false;  // whether position and rotation are those of the scene's handle
@@ -16,20 +18,23 @@ export class Handle {
     this.sent_ms = 0;
   }
 
-  get held() { return this.holder === "you"; }
+  /// Whether the viewer holds the handles and may move the chosen one.
+  get held() { return this.holder === "you" && this.canMove; }
 
-  /// Sets what the handles can do, and returns the hand that the page moves: -1 if it moves none.
+  /// Whether the page may move the chosen hand: otherwise a device does, or there is none.
+  get canMove() { return this.hands[this.hand]?.live === true; }
+
+  /// Sets what the handles can do; the chosen hand remains where it can be moved.
   setHands(hands) {
     this.hands = hands;
     this.known = this.wanted = false;
-    if (!hands[this.hand]?.live) this.hand = hands.findIndex((one) => one.live);
-    return this.hand;
+    if (!this.canMove) this.hand = hands.findIndex((one) => one.live);
   }
 
   choose(hand) {
-    if (hand === this.hand) return;
+    if (hand === this.hand || !this.hands[hand]) return;
     this.hand = hand;
-    this.known = false;
+    this.known = false;  // its handle stays where it is
   }
 
   /// The server's pose, which the target starts from.
@@ -46,7 +51,7 @@ export class Handle {
   }
 
   take() {
-    if (this.hand < 0 || this.held || this.holder === "other") return;
+    if (!this.canMove || this.holder !== "nobody") return;
     this.wanted = true;
     this.send({ type: "take" });
   }
@@ -57,7 +62,7 @@ export class Handle {
   }
 
   setHolder(holder) {
-    const granted = holder === "you" && !this.held;
+    const granted = holder === "you" && this.holder !== "you";
     this.holder = holder;
     if (holder !== "nobody") this.wanted = false;
     if (granted) this.sendPose();
@@ -65,7 +70,7 @@ export class Handle {
 
   moveBy(vector) {
     this.position.add(vector);
-    const space = this.hands?.[this.hand]?.workspace;
+    const space = this.hands[this.hand]?.workspace;
     if (space) {
       const centre = new Vector3(...space.center), out = this.position.clone().sub(centre);
       if (out.length() > space.radius) this.position.copy(centre).add(out.setLength(space.radius));

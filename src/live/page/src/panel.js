@@ -58,12 +58,13 @@ function showLateness(state, tick_s) {
 /// Energies below this are rounding errors of either sum [J].
 const NO_ENERGY_J = 1e-7;
 
-function showPassivity({ passivity }) {
+function showPassivity({ passivity }, { hands }) {
   if (!passivity?.observed) return light("light-passivity", "", "passivity is not observed");
   const { energy_j, min } = passivity, least = Math.min(energy_j, min ?? energy_j);
-  const put_in = withUnit(Math.max(0, energy_j), "J");
-  if (least >= -NO_ENERGY_J) light("light-passivity", "good", `passive: the hand put in ${put_in}`);
-  else light("light-passivity", "bad", `active: the hand got ${withUnit(-least, "J")} more than it put in`);
+  const [who, they] = hands.length > 1 ? ["hands", "they"] : ["hand", "it"];
+  const given = withUnit(Math.max(0, energy_j), "J"), got = withUnit(-least, "J");
+  if (least >= -NO_ENERGY_J) light("light-passivity", "good", `passive: the ${who} put in ${given}`);
+  else light("light-passivity", "bad", `active: the ${who} got ${got} more than ${they} put in`);
 }
 
 /// Both energies when the run began, and since when the bodies have had more than the hand put in [s].
@@ -111,7 +112,7 @@ function figuresOf(state, tick_s) {
 export function showState(state, scene) {
   showRate(state, scene.tick_s);
   showLateness(state, scene.tick_s);
-  showPassivity(state);
+  showPassivity(state, scene);
   showEnergy(state);
   const list = element("figures"), rows = figuresOf(state, scene.tick_s);
   if (list.children.length !== 2 * rows.length) {
@@ -163,15 +164,16 @@ export function notice(level, text, seconds = level === "error" ? 0 : 8) {
 
 const HOLDER = {
   you: "You hold the handle", other: "Another viewer holds the handle", nobody: "Nobody holds the handle",
-  none: "No handle to take in this scene",
+  none: "No handle to take in this scene", device: "A device moves this hand",
 };
 
 export function showHolder(handle) {
-  const holder = handle.hand < 0 ? "none" : handle.holder, take = element("take");
+  const holder = handle.hand < 0 ? "none" : handle.canMove ? handle.holder : "device";
+  const take = element("take");
   element("holding").className = holder;
   element("holder").textContent = HOLDER[holder];
   element("view").classList.toggle("holding", holder === "you");
-  take.hidden = holder === "none";
+  take.hidden = holder === "none" || holder === "device";
   take.disabled = holder === "other";
   take.textContent = holder === "you" ? "Give it back" : "Take the handle";
 }
@@ -179,7 +181,7 @@ export function showHolder(handle) {
 export function showHint(handle) {
   const touch = matchMedia("(pointer: coarse)").matches;
   const texts = handle.held
-    ? ["Drag: move \u00b7 wheel: depth \u00b7 Shift + drag: turn \u00b7 right drag: orbit",
+    ? ["Drag: move \u00b7 wheel: depth \u00b7 Shift: turn \u00b7 right drag: orbit",
       "One finger: move \u00b7 two: orbit \u00b7 pinch: depth"]
     : ["Drag the tool to take it \u00b7 drag elsewhere: orbit \u00b7 wheel: zoom",
       "Drag the tool to take it \u00b7 elsewhere: orbit \u00b7 pinch: zoom"];

@@ -22,7 +22,8 @@ export class Pointer {
   /// `chooseHand(hand)` is called when a press is near the tool of that hand.
   constructor(stage, handle, chooseHand) {
     Object.assign(this, { stage, handle, chooseHand, camera: stage.camera, action: null });
-    this.fingers = new Map();    const { canvas } = stage;
+    this.fingers = new Map();
+    const { canvas } = stage;
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => this.up(event));
@@ -30,20 +31,23 @@ export class Pointer {
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   }
 
-  /// The hand whose tool or handle is near the pointer, or -1.
+  /// The hand whose tool or handle is nearest to the pointer, or -1 where none is near.
   handNear({ offsetX, offsetY }) {
     const { stage, camera } = this;
     if (!stage.frame || !stage.description) return -1;
-    return stage.description.hands.findIndex(({ live }, hand) => {
-      if (!live) return false;
+    let nearest = -1, least = 1;  // distance, in parts of the reach
+    stage.description.hands.forEach(({ live }, hand) => {
+      if (!live) return;
       const tool = stage.toolOf(hand), poses = [stage.frame.hands[hand].pose];
       if (tool >= 0) poses.push(stage.frame.tools[tool]);
-      return poses.some((pose) => {
+      for (const pose of poses) {
         const at = new Vector3(pose[0], pose[1], pose[2]), { x, y } = camera.onScreen(at);
         const reach = Math.max(REACH_PX, stage.toolRadii[hand] / camera.metresPerPixel(at));
-        return Math.hypot(x - offsetX, y - offsetY) < reach;
-      });
+        const distance = Math.hypot(x - offsetX, y - offsetY) / reach;
+        if (distance < least) least = distance, nearest = hand;
+      }
     });
+    return nearest;
   }
 
   down(event) {

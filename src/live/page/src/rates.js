@@ -12,7 +12,8 @@ const DIRECTIONS = {
 };
 
 export class Rates {
-  /// `on.key` maps the keys that do something at once to functions; `on.pad({taken, moved})` hears buttons.
+  /// `on.key` maps the keys that do something at once to functions; `on.padTakes` and `on.padChooses` are
+  /// called for its buttons.
   constructor(stage, handle, on) {
     Object.assign(this, { stage, handle, on, keys: new Set(), shift: false, last_ms: 0, pads: false });
     stage.canvas.addEventListener("keydown", (event) => this.down(event));
@@ -71,7 +72,8 @@ export class Rates {
   stepPad(passed_s) {
     const pad = readGamePad();
     if (!pad) return;
-    if (pad.pressed) this.on.padTakes();
+    if (pad.takes) this.on.padTakes();
+    if (pad.chooses) this.on.padChooses();
     if (!this.handle.held) return this.moveView([pad.left[0], pad.left[1], pad.right[1]], passed_s);
     const sum = [pad.left[0], pad.left[1], pad.right[1]];
     if (pad.turns) this.turn(sum, STICK_TURN * passed_s);

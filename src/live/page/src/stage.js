@@ -101,6 +101,12 @@ export class Stage {
     this.redraw();
   }
 
+  /// Shows which of several hands the page moves.
+  chooseHand(chosen) {
+    this.hands.forEach((one, hand) => one.choose(hand === chosen));
+    this.redraw();
+  }
+
   toolOf(hand) {
     return this.description.tools.findIndex((one) => one.hand === hand);
   }

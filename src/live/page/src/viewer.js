@@ -45,19 +45,25 @@ function showHolding() {
   scenes.allowed = mine;
 }
 
+/// Moves this hand and shows its force.
 function chooseHand(hand) {
+  if (!scene?.hands[hand]) return;
   handle.choose(hand);
   chart.show(hand);
+  stage.chooseHand(hand);
   element("hand").value = hand;
+  element("force-title").textContent = scene.hands.length < 2 ? "Force on the hand"
+    : `Force on hand ${hand + 1}, ${scene.hands[hand].name}`;
+  showHolding();
 }
 
 function setHands() {
-  const live = handle.setHands(scene.hands), choice = element("hand");
-  choice.replaceChildren(...scene.hands.map(({ name }, hand) =>
-    new Option(name || `hand ${hand + 1}`, hand)));
-  element("hand-choice").hidden = scene.hands.length < 2;
+  handle.setHands(scene.hands);
+  element("hand").replaceChildren(...scene.hands.map(({ name, live }, hand) =>
+    new Option(`${hand + 1}: ${name}${live ? "" : " (device)"}`, hand)));
+  element("hand").hidden = scene.hands.length < 2;
   element("reading").hidden = element("force").hidden = scene.hands.length === 0;
-  if (scene.hands.length > 0) chooseHand(Math.max(0, live));
+  chooseHand(Math.max(0, handle.hand));
 }
 
 const on = {
@@ -121,7 +127,7 @@ const on = {
   },
 };
 
-const toggleHandle = () => (handle.held ? handle.drop() : handle.take());
+const toggleHandle = () => (handle.holder === "you" ? handle.drop() : handle.take());
 const resetView = () => { if (scene) stage.resetView(); };
 
 function connectButtons() {
@@ -148,10 +154,13 @@ function connectButtons() {
 function connectDevices() {
   new Pointer(stage, handle, chooseHand);
   const zoom = (factor) => { stage.camera.zoom(factor); stage.viewChanged(); };
+  const hands = Object.fromEntries([..."123456789"].map((key) => [key, () => chooseHand(key - 1)]));
   new Rates(stage, handle, {
-    key: { t: toggleHandle, Escape: () => handle.held && handle.drop(), 0: resetView,
+    key: { ...hands, t: toggleHandle, 0: resetView,
+      Escape: () => { if (handle.holder === "you") handle.drop(); },
       " ": () => controls.pause(), "+": () => zoom(0.9), "=": () => zoom(0.9), "-": () => zoom(1 / 0.9) },
     padTakes: toggleHandle,
+    padChooses: () => chooseHand((handle.hand + 1) % scene.hands.length),
     padConnected: ({ id }) => notice("info", `game pad: ${id}. A takes the handle`),
     strength: () => handle.strength || 0,
   });
@@ -171,13 +180,13 @@ if (stage.works) {
   element("cover-text").textContent = "The view needs WebGL 2, which this browser does not offer.";
 }
 /// For tests: frames drawn so far, and triangles of the last one; draws one, whose pixels can be read until
-/// the script returns; where the tool of the first hand is in the window.
+/// the script returns; where the tool of a hand is in the window.
 window.palpateTest = {
   frames: () => stage.frames,
   triangles: () => stage.renderer.info.render.triangles,
   draw: (whole) => stage.draw(whole),
-  tool: () => {
-    const { x, y } = stage.camera.onScreen(stage.tools[stage.toolOf(0)].position);
+  tool: (hand = 0) => {
+    const { x, y } = stage.camera.onScreen(stage.tools[stage.toolOf(hand)].position);
     const { left, top } = stage.canvas.getBoundingClientRect();
     return [left + x, top + y];
   },
