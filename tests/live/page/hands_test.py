@@ -21,7 +21,10 @@ class Hands(InBrowser):
         return list(self.mock.scene.poses[hand])
 
     def tool(self, hand):
-        return self.tab.value(f"palpateTest.tool({hand})")
+        """Returns where the tool is drawn, after the frames that wait to be drawn."""
+        self.tab.wait_for(f"palpateTest.tool({hand}) !== null", 30)
+        return self.tab.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame("
+                              f"() => done(palpateTest.tool({hand})))))")
 
     def press_key(self, digit):
         self.tab.value("document.getElementById('view').focus()")

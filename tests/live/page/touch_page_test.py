@@ -48,7 +48,7 @@ class TouchPage(unittest.TestCase):
         self.addCleanup(self.tab.close)
         self.tab.size(1280, 800)
         self.tab.open(f"http://127.0.0.1:{self.server.port}/?token={self.server.token}")
-        self.tab.wait_for("window.palpateTest && "
+        self.tab.wait_for("window.palpateTest && palpateTest.tool() && "
                           "document.getElementById('reading').dataset.pose !== undefined", 120)
 
     def sample(self):

@@ -180,12 +180,13 @@ if (stage.works) {
   element("cover-text").textContent = "The view needs WebGL 2, which this browser does not offer.";
 }
 /// For tests: frames drawn so far, and triangles of the last one; draws one, whose pixels can be read until
-/// the script returns; where the tool of a hand is in the window.
+/// the script returns; where the tool of a hand is in the window, once a frame is drawn.
 window.palpateTest = {
   frames: () => stage.frames,
   triangles: () => stage.renderer.info.render.triangles,
   draw: (whole) => stage.draw(whole),
   tool: (hand = 0) => {
+    if (!stage.frame) return null;
     const { x, y } = stage.camera.onScreen(stage.tools[stage.toolOf(hand)].position);
     const { left, top } = stage.canvas.getBoundingClientRect();
     return [left + x, top + y];
