@@ -16,7 +16,12 @@ Pose HandleTarget::pose() const {
 
 PageDevice::PageDevice(std::shared_ptr<HandleMailbox> mailbox, const Pose& start,
                        const FollowerLimits& limits)
-    : mailbox_(std::move(mailbox)), follower_(start, limits), start_(start) {}
+    : mailbox_(std::move(mailbox)), limits_(limits), follower_(start, limits), start_(start) {}
+
+void PageDevice::start_at(const Pose& start) {
+  start_ = start;
+  follower_ = HandleFollower(start, limits_);
+}
 
 device::DeviceSpecification PageDevice::specification() const {
   device::DeviceSpecification out;

@@ -36,6 +36,7 @@ class PageDevice : public device::Device {
   ~PageDevice() override { close(); }
   device::DeviceSpecification specification() const override;
   bool is_live() const override { return true; }
+  void start_at(const Pose& start) override;
   /// Moves targets outside the ball to its nearest point.
   void bound(const device::PoseBounds& bounds) override { bounds_ = bounds; }
 
@@ -44,6 +45,7 @@ class PageDevice : public device::Device {
 
  private:
   std::shared_ptr<HandleMailbox> mailbox_;
+  FollowerLimits limits_;
   HandleFollower follower_;
   Pose start_;
   device::PoseBounds bounds_;

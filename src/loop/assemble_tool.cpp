@@ -167,6 +167,7 @@ ToolInstance assemble_tool(World& world, const scene::Hand& hand, std::unique_pt
   // The monolithic scheme knows the handle's path in advance, and its hand is not sampled.
   const bool sampled = d.exchange.scheme != scene::ExchangeScheme::kMonolithic;
   device::Motors motors = sampled ? device::Motors(device::motor_figures(spec)) : device::Motors();
+  device->start_at({quaternion_of(hand.tool->rotation_vector_rad), hand.tool->position_m});
   device->bound(pose_bounds(world, figures.workspace));
   const auto instance = [&](auto scheme) {
     return ToolInstance{.name = hand.name,

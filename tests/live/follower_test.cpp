@@ -105,6 +105,18 @@ TEST(PageDevice, HoldsItsPoseWithoutTargetsAndFollowsTheNewest) {
   EXPECT_EQ(sample.switches, 5U);
 }
 
+TEST(PageDevice, StartsAtTheToolThatAssemblyPlaced) {
+  const auto mailbox = std::make_shared<HandleMailbox>();
+  PageDevice device(mailbox, Pose{Quat::Identity(), {0.0, 0.0, 0.1}});
+  const Pose placed{Quat(0.6, 0.0, 0.8, 0.0), {0.0, 0.02, 0.04}};
+  device.start_at(placed);
+  for (int i = 0; i <= 50; ++i) {
+    const device::HandleSample sample = device.sample(i * kTick);
+    ASSERT_EQ(sample.pose.translation, placed.translation);
+    ASSERT_EQ(sample.pose.rotation.coeffs(), placed.rotation.coeffs());
+  }
+}
+
 TEST(PageDevice, DoesNotLeaveTheBoundsOfTheScene) {
   const auto mailbox = std::make_shared<HandleMailbox>();
   PageDevice device(mailbox, {});

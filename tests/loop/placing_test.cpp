@@ -7,6 +7,7 @@
 #include "loop/placing.h"
 #include "loop/small_scenes.h"
 #include "palpate/core/error.h"
+#include "palpate/device/device.h"
 #include "palpate/loop/run.h"
 
 namespace {
@@ -47,6 +48,31 @@ TEST(Placing, ToolTouchesWithinTheToleranceAndKeyframesFollow) {
   const std::vector<KeyframeSpec>& keyframes = world->description.device->keyframes;
   EXPECT_EQ((keyframes[0].position_m - placed.position_m).norm(), 0.0);
   EXPECT_NEAR((keyframes[1].position_m - keyframes[0].position_m - Vec3(0, 0, -0.004)).norm(), 0.0, 1e-15);
+}
+
+/// A handle without a place in space of its own.
+class Pointer : public device::Device {
+ public:
+  explicit Pointer(std::vector<Pose>& starts) : starts_(starts) {}
+  device::DeviceSpecification specification() const override { return {}; }
+  void start_at(const Pose& start) override { starts_.push_back(start); }
+
+ protected:
+  device::HandleSample do_sample(double) override { return {}; }
+
+ private:
+  std::vector<Pose>& starts_;
+};
+
+TEST(Placing, DeviceOfTheCallerStartsAtThePlacedTool) {
+  scene::Description d = above_block();
+  d.tool->rotation_vector_rad = Vec3(0.1, 0.2, 0.3);
+  std::vector<Pose> starts;
+  const auto world = loop::assemble(d, std::make_unique<Pointer>(starts));
+  ASSERT_EQ(starts.size(), 1u);
+  EXPECT_EQ((starts[0].translation - world->placements.at(0).position_m).norm(), 0.0);
+  EXPECT_NEAR(starts[0].translation.z(), 0.02 + 0.015, loop::kTouchingGap) << "not 0.1 m above";
+  EXPECT_NEAR(starts[0].rotation.angularDistance(quaternion_of(Vec3(0.1, 0.2, 0.3))), 0.0, 1e-12);
 }
 
 // Along a slanted direction the ball touches first with the side of its direction of motion only on a curved

@@ -120,6 +120,9 @@ class Device {
   /// @param t  time of the run's start [s]  @param stop  may be null
   /// @throws Error if the event did not occur in time
   void await(double t, const std::atomic<bool>* stop);
+  /// Tells a device whose handle has no place in space of its own, such as a pointer, where to start: at the
+  /// pose of the tool at the start of the run. Called before the first sample. Other devices ignore it.
+  virtual void start_at(const Pose&) {}
   /// Sets bounds outside which poses are dropped, for devices whose poses come from an untrusted source.
   virtual void bound(const PoseBounds&) {}
 
