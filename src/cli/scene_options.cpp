@@ -67,7 +67,7 @@ void add_scene(CLI::App& command, scene::SceneArguments& scene, bool integrator)
       .add_option(
           "--set", scene.overrides,
           "change one value of the scene: KEY=VALUE with a dotted key, table indices from 0, and a TOML "
-          "value")
+          "value; a text needs no quotes")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   if (integrator)

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <charconv>
+#include <set>
 
 #include "palpate/core/error.h"
 #include "scene/document.h"
+#include "scene/keys.h"
 #include "scene/toml_bounds.h"
 
 namespace palpate::scene {
@@ -32,9 +34,51 @@ bool is_bare_word(const std::string& text) {
   });
 }
 
-/// Parses the value after `=`.  A bare word or path is taken as a string, because a shell removes quotes:
-/// integrator.name=cvode-bdf.
-toml::table parse_value(const std::string& value, const std::string& from) {
+/// Returns the dotted name of a key without indices, by the table in which the keys are listed: a hand has
+/// those of [tool] and [device].
+std::string listed_name(const std::vector<std::string>& parts) {
+  std::string out;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::string& part = parts[i];
+    const bool is_index =
+        std::all_of(part.begin(), part.end(), [](unsigned char c) { return std::isdigit(c); });
+    const bool is_hand = i == 0 && part == "hand" && parts.size() > 3;
+    if (!is_index && !is_hand) out += (out.empty() ? "" : ".") + part;
+  }
+  return out;
+}
+
+/// Returns whether the scene's key at that path takes a text.
+bool takes_text(const std::vector<std::string>& parts) {
+  static const std::set<std::string> texts = [] {
+    std::set<std::string> out;
+    for (const KeyRow& row : rows_of("", description_keys()))
+      if (row.type == "text") out.insert(row.table.empty() ? row.name : row.table + "." + row.name);
+    return out;
+  }();
+  return texts.count(listed_name(parts)) > 0;
+}
+
+/// Returns a text in the quotes of TOML, in which only backslashes, quotes and control characters have a
+/// meaning.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text)
+    if (c == '\\' || c == '"')
+      out += {'\\', c};
+    else if (c == '\t' || c == '\n')
+      out += c == '\t' ? "\\t" : "\\n";
+    else
+      out += c;
+  return out + '"';
+}
+
+/// Parses the value after `=`. Where the key takes a text, an unquoted value is the text, whatever it looks
+/// like: device.library_options=5005. Elsewhere, too, a bare word or path is taken as a text, because a shell
+/// removes quotes.
+toml::table parse_value(const std::string& value, const std::string& from, bool is_text) {
+  if (is_text && value.front() != '"' && value.front() != '\'')
+    return toml::parse("value = " + quoted(value), from);
   try {
     toml::table parsed = toml::parse("value = " + value, from);
     if (parsed.size() == 1) return parsed;
@@ -114,7 +158,7 @@ void apply_override(toml::table& root, const std::string& text) {
       trimmed(text.substr(equals + 1)).empty())
     fail("{}: must be PATH=VALUE, as in body.0.youngs_modulus_pa=1e5", from);
   const std::vector<std::string> parts = split(trimmed(text.substr(0, equals)));
-  toml::table parsed = parse_value(trimmed(text.substr(equals + 1)), from);
+  toml::table parsed = parse_value(trimmed(text.substr(equals + 1)), from, takes_text(parts));
   toml::node& value = *parsed.get("value");
   const toml::source_region region = value.source();
 

@@ -40,6 +40,42 @@ TEST(Override, TakesBareWordsAsText) {
       << "read as a path, refused as a name";
 }
 
+// A key that takes a text takes it without quotes, also where TOML would read a number, a truth value or a
+// list.
+TEST(Override, TakesAnyUnquotedValueAsTextWhereTheKeyDoes) {
+  const auto options = [](const std::string& value) {
+    return with({"device.type=plugin", "device.library=driver.so", "device.library_options=" + value})
+        .device->library_options;
+  };
+  EXPECT_EQ(options("5005"), "5005");
+  EXPECT_EQ(options("0.082"), "0.082");
+  EXPECT_EQ(options("true"), "true");
+  EXPECT_EQ(options("2026-12-01"), "2026-12-01");
+  EXPECT_EQ(options("/dev/ttyUSB0, 115200 baud"), "/dev/ttyUSB0, 115200 baud");
+  EXPECT_EQ(options("a=b"), "a=b");
+  EXPECT_EQ(options("[1, 2]"), "[1, 2]");
+  EXPECT_EQ(options("C:\\new \"x\""), "C:\\new \"x\"");
+  EXPECT_EQ(options("\"5005\""), "5005") << "quotes are allowed";
+  EXPECT_EQ(options("'5005'"), "5005");
+  EXPECT_EQ(with({"scene.name=2026"}).name, "2026");
+  EXPECT_EQ(refusal("device.library_options=\"5005"),
+            "--set device.library_options=\"5005: `\"5005` is not a single TOML value; write a number, true, "
+            "false, a word, [1, 2, 3] or \"text\"");
+  EXPECT_EQ(refusal("body.0.youngs_modulus_pa=stiff"),
+            "--set body.0.youngs_modulus_pa=stiff: body \"ball\": youngs_modulus_pa = \"stiff\" must be a "
+            "number")
+      << "a number remains one";
+}
+
+TEST(Override, ReachesTextsOfSeveralHands) {
+  const std::vector<std::string> second = {
+      "hand=[{ name = \"left\", tool = { shape = \"sphere\", radius_m = 0.01, mass_kg = 0.1, coupling = { "
+      "stiffness_n_m = 100, damping_n_s_m = 1, rotational_stiffness_n_m_rad = 1, "
+      "rotational_damping_n_m_s_rad = 0.01 } }, device = { type = \"plugin\", library = \"driver.so\" } }]",
+      "hand.0.device.library_options=5005"};
+  EXPECT_EQ(with(second).hands.at(0).device.library_options, "5005");
+}
+
 TEST(Override, IsNamedInErrors) {
   EXPECT_EQ(refusal("body.0.poissons_ratio=0.5"),
             "--set body.0.poissons_ratio=0.5: body \"ball\": poissons_ratio = 0.5 must lie in (-1, 0.5); use "

@@ -109,7 +109,7 @@ void add_touch(CLI::App& app, Invocation& invocation) {
   command
       ->add_option("--set", arguments->scene.overrides,
                    "change one value of the scene: KEY=VALUE with a dotted key, table indices from 0, and a "
-                   "TOML value")
+                   "TOML value; a text needs no quotes")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command->add_option("--integrator", arguments->scene.integrator, "replace the scene's integrator")
