@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 
 #include "device/make.h"
 #include "palpate/core/error.h"
@@ -12,6 +13,9 @@
 
 namespace palpate::device {
 namespace {
+
+/// Cut-off of the velocities that are derived from poses [1/s].
+constexpr double kVelocityCutoff = 100.0;
 
 Vec3 vec_of(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
 
@@ -54,7 +58,8 @@ class PluginDevice : public Device {
     PalpatePluginSample read = last_;
     timed("sample", [&] { return library_.table().sample(device_, t, &read); });
     HandleSample out;
-    out.valid = read.valid != 0 && accept(read);
+    if (!library_.has_velocities()) derive_velocities(t, read);
+    out.valid = read.valid != 0 && accept(t, read);
     out.pose = pose_of(last_);
     out.twist = twist_of(last_);
     out.switches = last_.switches;
@@ -79,8 +84,20 @@ class PluginDevice : public Device {
     return {vec_of(s.angular_velocity_rad_s), vec_of(s.linear_velocity_m_s)};
   }
 
+  /// Writes velocities from the change since the last accepted pose: the backward difference through a
+  /// first-order low pass. Zero until the second pose.
+  void derive_velocities(double t, PalpatePluginSample& s) {
+    if (const double h = t - accepted_at_; accepted_ > 0 && h > 0.0 && s.valid != 0) {
+      const double share = -std::expm1(-2.0 * std::numbers::pi * kVelocityCutoff * h);
+      rate_ += share * (pose_difference(pose_of(last_), pose_of(s)) / h - rate_);
+      if (!rate_.allFinite()) rate_.setZero();  // the pose is not finite, and accept() counts it
+    }
+    write(rate_.head<3>(), s.angular_velocity_rad_s);
+    write(rate_.tail<3>(), s.linear_velocity_m_s);
+  }
+
   /// Checks a pose and adopts it; returns whether it was accepted. Others are counted.
-  bool accept(const PalpatePluginSample& s) {
+  bool accept(double t, const PalpatePluginSample& s) {
     const Eigen::Map<const Eigen::Vector4d> q(s.rotation_wxyz);
     const Twist twist = twist_of(s);
     if (!vec_of(s.position_m).allFinite() || !twist.linear.allFinite() || !twist.angular.allFinite() ||
@@ -88,6 +105,7 @@ class PluginDevice : public Device {
       return ++not_finite_, false;
     if (!bounds_.hold(pose_of(s), twist)) return ++out_of_bounds_, false;
     last_ = s;
+    accepted_at_ = t;
     ++accepted_;
     return true;
   }
@@ -104,6 +122,8 @@ class PluginDevice : public Device {
   PoseBounds bounds_;
   void* device_ = nullptr;      ///< State of the driver, null while it is closed.
   PalpatePluginSample last_{};  ///< Last accepted sample.
+  double accepted_at_ = 0.0;    ///< Its time [s].
+  Vec6 rate_ = Vec6::Zero();    ///< Velocities from poses: angular [rad/s], linear [m/s].
   long long accepted_ = 0, not_finite_ = 0, out_of_bounds_ = 0;
   Clock::duration longest_{0};  ///< Longest call of sample or feedback.
 };

@@ -56,7 +56,16 @@ PluginLibrary::PluginLibrary(const std::string& library, const std::string& opti
     : options_(options) {
   const std::string path = loadable_path(library, folder);
   handle_ = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle_) fail("device: library = \"{}\" cannot be loaded: {}", library, printable(::dlerror()));
+  if (!handle_) {
+    const std::string why = printable(::dlerror());
+    if (library.find('/') == std::string::npos && path == library)  // a name that the loader did not find
+      fail(
+          "device: library = \"{}\" cannot be loaded: it is not in the scene's folder {}, and {}; give an "
+          "absolute "
+          "path, or one from the scene's folder",
+          library, std::filesystem::absolute(folder).lexically_normal().string(), why);
+    fail("device: library = \"{}\" cannot be loaded: {}", library, why);
+  }
   try {
     table_ = static_cast<const PalpatePlugin*>(::dlsym(handle_, kSymbol));
     if (!table_)
@@ -132,6 +141,7 @@ void PluginLibrary::read_specification(const std::string& library) {
   for (int i = 0; i < 3; ++i) extents[i] = stated("workspace_m", read.workspace_m[i]).value_or(0.0);
   if (extents.minCoeff() > 0.0) specification_.workspace = extents;
   needs_real_time_ = read.real_time != 0;
+  has_velocities_ = read.no_velocity == 0;
 }
 
 void PluginLibrary::fail_in(const char* function, const std::string& text) const {

@@ -23,6 +23,7 @@ class PluginLibrary {
   const std::string& options() const { return options_; }
   const DeviceSpecification& specification() const { return specification_; }  ///< Stated figures.
   bool needs_real_time() const { return needs_real_time_; }                    ///< A person moves the device.
+  bool has_velocities() const { return has_velocities_; }                      ///< Samples state velocities.
   bool has_motors() const { return table_->feedback; }
 
   /// Calls a function of the driver: `work` returns its error text, or null.
@@ -46,7 +47,7 @@ class PluginLibrary {
   void* handle_ = nullptr;
   const PalpatePlugin* table_ = nullptr;
   DeviceSpecification specification_;
-  bool needs_real_time_ = false;
+  bool needs_real_time_ = false, has_velocities_ = true;
   DriverName name_;
   std::optional<DriverGuard> guard_;
 };

@@ -66,6 +66,20 @@ TEST(Plugin, samples_and_receives_forces) {
   EXPECT_EQ(counter(*device, "poses_accepted"), 3);
 }
 
+// x = t/10 without turning: the low pass of 100 1/s has the velocity to 1e-9 after 50 ms.
+TEST(Plugin, velocities_that_a_driver_does_not_state_follow_from_its_poses) {
+  const auto device = driver("no velocity");
+  EXPECT_EQ(device->sample(0.0).twist.linear, Vec3::Zero().eval()) << "no motion is known yet";
+  HandleSample s = device->sample(1e-3);
+  const double share = 1.0 - std::exp(-2.0 * M_PI * 100.0 * 1e-3);
+  EXPECT_NEAR(s.twist.linear.x(), 0.1 * share, 1e-12);
+  EXPECT_EQ(device->sample(1e-3).twist.linear, s.twist.linear) << "a repeated time changes nothing";
+  for (int i = 2; i <= 50; ++i) s = device->sample(1e-3 * i);
+  EXPECT_NEAR(s.twist.linear.x(), 0.1, 1e-9);
+  EXPECT_EQ(s.twist.angular, Vec3::Zero().eval()) << "the numbers of the driver are not used";
+  EXPECT_EQ(driver("")->sample(0.5).twist.angular, Vec3(0, 0, 0.2)) << "other drivers' are";
+}
+
 TEST(Plugin, its_stated_figures_take_the_place_of_a_profile) {
   const auto device = driver("stated");
   const DeviceFigures figures = figures_of(with_reported_limits(spec_of("driver.so"), *device));
@@ -136,6 +150,7 @@ TEST(Plugin, libraries_that_do_not_fit_are_refused) {
   expect_contains(refusal("./nowhere.so"),
                   "device: library = \"./nowhere.so\" does not exist: there is no file");
   expect_contains(refusal("libnowhere.so"), "device: library = \"libnowhere.so\" cannot be loaded: ");
+  expect_contains(refusal("libnowhere.so"), "it is not in the scene's folder " PALPATE_DRIVERS);
   expect_contains(refusal(text), "cannot be loaded: ");
   expect_contains(refusal("driver_without_symbol.so"), "exports no \"palpate_device_plugin\"");
   expect_contains(refusal("driver_of_version_7.so"),

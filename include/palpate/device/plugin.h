@@ -28,15 +28,15 @@ typedef struct PalpatePluginSpecification {
   double max_stiffness_n_m; /**< Stiffest virtual wall that the device renders [N/m]. */
   double workspace_m[3];    /**< Extents of a box about `workspace_center_m` of the scene [m]. */
   uint32_t real_time;       /**< 1: a person moves it, the run must be in real time; 0: a simulated device. */
-  uint32_t reserved;        /**< 0. */
+  uint32_t no_velocity;     /**< 1: `sample` writes no velocities, and palpate derives them from the poses. */
 } PalpatePluginSpecification;
 
 /** State of the handle. */
 typedef struct PalpatePluginSample {
   double position_m[3];             /**< Position of the handle's origin [m]. */
   double rotation_wxyz[4];          /**< Unit quaternion, from the handle's axes to the scene's. */
-  double linear_velocity_m_s[3];    /**< Velocity of the origin [m/s]. */
-  double angular_velocity_rad_s[3]; /**< Angular velocity [rad/s]. */
+  double linear_velocity_m_s[3];    /**< Velocity of the origin [m/s], unless `no_velocity` is set. */
+  double angular_velocity_rad_s[3]; /**< Angular velocity [rad/s], unless `no_velocity` is set. */
   uint32_t switches;                /**< Bit i is 1 while switch i is pressed. */
   uint32_t valid;                   /**< 0: no new pose arrived; the force falls to zero within 20 ms. */
 } PalpatePluginSample;

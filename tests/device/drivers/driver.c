@@ -23,6 +23,7 @@ static const char* specification(const char* options, PalpatePluginSpecification
   if (strcmp(behaviour, "bad figure") == 0) out->max_force_n = -2.0;
   if (strcmp(behaviour, "no specification") == 0) return "firmware 1.2 is too old";
   out->real_time = strcmp(behaviour, "live") == 0;
+  out->no_velocity = strcmp(behaviour, "no velocity") == 0;
   return NULL;
 }
 
