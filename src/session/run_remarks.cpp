@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "loop/describe_fallbacks.h"
 #include "loop/penetration.h"
@@ -109,21 +110,32 @@ void add_reduction_errors(const loop::World& world, Remarks& out) {
   }
 }
 
-void add_port(const loop::PortEnergy& port, Remarks& out) {
-  out.push_back(
-      fmt::format("energy at the device port: minimum {:.3g} J, at the end {:.3g} J; the passivity "
-                  "controller dissipated {:.3g} J in {} ticks, {:.2g} % of the work of the motors",
-                  port.least, port.energy, port.controller_dissipated, port.controller_ticks,
-                  port.work > 0.0 ? 100.0 * port.controller_dissipated / port.work : 0.0));
-}
-
 }  // namespace
+
+std::string port_remark(const loop::PortEnergy& port) {
+  std::string out = fmt::format("energy at the device port: minimum {:.3g} J, at the end {:.3g} J",
+                                port.least, port.energy);
+  if (port.controller_ticks == 0) return out;
+  const double kept = port.controller_dissipated;
+  out += fmt::format("; the passivity controller reduced the force in {} tick{}, which ",
+                     port.controller_ticks, port.controller_ticks == 1 ? "" : "s");
+  out += kept < 0.0 ? fmt::format("spared the hand {:.3g} J of work", -kept)
+                    : fmt::format("kept {:.3g} J from the hand", kept);
+  if (port.work > 0.0)
+    out += fmt::format(" ({:.2g} % of the motors' work)", 100.0 * std::abs(kept) / port.work);
+  return out;
+}
 
 void check_poses_arrived(const loop::World& world, const loop::RunResult& result, MissingOutputs& missing) {
   if (result.stopped || result.ticks == 0) return;
   for (std::size_t hand = 0; hand <= result.more_hands.size(); ++hand) {
     const auto [without, ticks] = ticks_without_pose(result, hand);
-    if (2 * without > ticks)
+    if (without == ticks)
+      missing.add(fmt::format("force on {}", hand_label(world, hand)),
+                  fmt::format("its device sent no pose in {} ticks: start it before the run, and check its "
+                              "connection",
+                              ticks));
+    else if (2 * without > ticks)
       missing.add(
           fmt::format("force on {}", hand_label(world, hand)),
           fmt::format(
@@ -148,7 +160,7 @@ std::vector<std::string> run_remarks(const loop::World& world, const loop::RunRe
   add_penetrations(world, out);
   add_quadrature(world, out);
   add_reduction_errors(world, out);
-  if (result.port) add_port(*result.port, out);
+  if (result.port) out.push_back(port_remark(*result.port));
   if (result.real_time)
     for (std::string& line : clock_remarks(result, world.description.exchange.linearisation))
       out.push_back(std::move(line));

@@ -173,6 +173,26 @@ TEST(Passivity, controller_keeps_an_active_wall_above_zero) {
   }
 }
 
+// The force is reduced by the motions that the handle may make. If it then turns back, the removed part would
+// have resisted it: the reduction spares the hand that work, which counts negative.
+TEST(Passivity, kept_energy_is_negative_where_the_removed_force_would_have_resisted) {
+  for (const double step : {1e-3, -1e-3}) {  // the motion in the tick of the reduced force
+    PassivityController controller(Mode::kControl, {.tick = T});
+    Motors motors;
+    const auto tick = [&](double t, double x, double requested) {
+      motors.advance(t);
+      const Wrench out = controller.apply(t, at(x), motors, force(requested));
+      motors.send(t, out);
+      return out.force.x();
+    };
+    tick(0.0, 0.0, 0.0);
+    const double removed = 1.5 - tick(T, 1e-3, 1.5);
+    ASSERT_GT(removed, 0.1);
+    tick(2 * T, 1e-3 + step, 0.0);
+    EXPECT_NEAR(controller.dissipated(), removed * step, 1e-12);
+  }
+}
+
 // The observed energy is the work of the force that the motors hold: here summed from the forces sent, each
 // delayed by whole ticks, quantised and saturated.
 TEST(Passivity, observer_counts_the_force_that_the_motors_hold) {

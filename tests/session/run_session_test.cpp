@@ -10,6 +10,7 @@
 #include "palpate/loop/load.h"
 #include "palpate/store/run_file.h"
 #include "session/resumption.h"
+#include "session/run_remarks.h"
 #include "store/summary.h"
 #include "temporary_folder.h"
 
@@ -38,6 +39,27 @@ name = "cvode-bdf"
 rtol = 1e-3
 )";
 constexpr const char* kRecord = "[record]\nstate_period_s = 0.01\n";
+
+// Energy kept from the hand has either sign: a removed force may have driven the handle, or resisted it.
+TEST(PortRemark, states_a_positive_energy_and_who_had_it) {
+  const loop::PortEnergy observed{.energy = 0.0126, .least = -0.001, .work = 0.1};
+  EXPECT_EQ(session::port_remark(observed),
+            "energy at the device port: minimum -0.001 J, at the end 0.0126 J");
+  loop::PortEnergy controlled = observed;
+  controlled.least = 0.0;
+  controlled.controller_ticks = 2;
+  controlled.controller_dissipated = 0.002;
+  EXPECT_EQ(
+      session::port_remark(controlled),
+      "energy at the device port: minimum 0 J, at the end 0.0126 J; the passivity controller reduced the "
+      "force in 2 ticks, which kept 0.002 J from the hand (2 % of the motors' work)");
+  controlled.controller_ticks = 1;
+  controlled.controller_dissipated = -0.002;
+  EXPECT_EQ(
+      session::port_remark(controlled),
+      "energy at the device port: minimum 0 J, at the end 0.0126 J; the passivity controller reduced the "
+      "force in 1 tick, which spared the hand 0.002 J of work (2 % of the motors' work)");
+}
 
 class RunSession : public testing::Test {
  protected:

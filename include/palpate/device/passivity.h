@@ -115,7 +115,10 @@ class PassivityController {
   Wrench apply(double t, const Pose& handle, const Motors& motors, const Wrench& limited, bool valid = true);
   /// Returns the observer of the energy.
   const PassivityObserver& observer() const { return observer_; }
-  double dissipated() const { return dissipated_; }  ///< Energy kept from the hand by reductions so far [J].
+  /// Returns the energy that the reductions so far kept from the hand [J]: the work on the hand of the
+  /// removed parts of the forces. It is negative where the removed parts would mostly have resisted the
+  /// motion: a force is reduced by the motions that the handle may make, of which it then makes one.
+  double dissipated() const { return dissipated_; }
   /// Returns the number of ticks in which a wrench was reduced.
   long active_ticks() const { return active_; }
   /// Returns the mode of operation.

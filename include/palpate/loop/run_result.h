@@ -12,9 +12,10 @@ namespace palpate::loop {
 
 /// Energy at the device's port over a run (device/passivity.h) [J].
 struct PortEnergy {
-  double energy = 0.0, least = 0.0;  ///< Net energy put in by the hand: at the end, and its minimum.
-  double work = 0.0, controller_dissipated = 0.0;  ///< Magnitude of the motors' work; part of the controller.
-  long controller_ticks = 0;                       ///< Ticks in which the controller reduced the wrench.
+  double energy = 0.0, least = 0.0;    ///< Net energy put in by the hand: at the end, and its minimum.
+  double work = 0.0;                   ///< Magnitude of the motors' work.
+  double controller_dissipated = 0.0;  ///< Energy that reductions kept from the hand, either sign.
+  long controller_ticks = 0;           ///< Ticks in which the controller reduced the wrench.
 };
 
 /// Results of one further hand; the results of the first hand are members of RunResult.
