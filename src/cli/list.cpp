@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -22,7 +24,8 @@ namespace palpate::cli {
 namespace {
 
 struct ListArguments {
-  std::string what;       ///< Name of a list; empty: all lists
+  std::string what;       ///< Name of a list; empty: the names of the lists
+  bool all = false;       ///< Prints all lists.
   bool markdown = false;  ///< Prints a page of docs/: keys.md, study-keys.md or names.md
 };
 
@@ -32,7 +35,7 @@ const char* const kStudyKeys = "study-keys";
 /// Returns the cases with a known answer, as palpate-validation prints them; empty if it is not built, or if
 /// another list is requested.
 loop::ChoiceList case_choices(const std::string& requested) {
-  loop::ChoiceList out{"cases", "with a known answer: palpate validate", {}};
+  loop::ChoiceList out{"cases", "cases with a known answer: palpate validate", {}};
   if (!(requested.empty() || requested == out.what) || !is_there(kCases)) return out;
   std::istringstream lines(output_of(kCases));
   for (std::string name, summary; std::getline(lines, name, '\t') && std::getline(lines, summary);)
@@ -41,7 +44,7 @@ loop::ChoiceList case_choices(const std::string& requested) {
 }
 
 loop::ChoiceList scene_choices() {
-  loop::ChoiceList out{"scenes", "that come with palpate: palpate run NAME", {}};
+  loop::ChoiceList out{"scenes", "scenes that come with palpate: palpate run NAME", {}};
   for (const std::string& path : shipped_scenes())
     out.choices.push_back({std::filesystem::path(path).stem().string(), first_comment(path)});
   return out;
@@ -50,6 +53,24 @@ loop::ChoiceList scene_choices() {
 bool has_orders(const loop::ChoiceList& list) {
   return std::any_of(list.choices.begin(), list.choices.end(),
                      [](const loop::Choice& c) { return c.order > 0; });
+}
+
+/// Returns the width of the terminal; 0 if the output goes elsewhere, where lines are not broken.
+std::size_t width_of_output() {
+  winsize size{};
+  if (::isatty(STDOUT_FILENO) != 1 || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return 0;
+  return size.ws_col;
+}
+
+/// Prints the names of all lists with the number of their entries.
+void print_overview(const std::vector<loop::ChoiceList>& lists) {
+  report::Rows rows;
+  for (const loop::ChoiceList& list : lists)
+    rows.push_back({list.what, std::to_string(list.choices.size()), list.summary});
+  rows.push_back({kKeys, std::to_string(scene::key_rows(loop::kinds()).size()), "every key of a scene"});
+  rows.push_back({kStudyKeys, std::to_string(scene::study_key_rows().size()), "every key of a study"});
+  fmt::print("{}\n`palpate list NAME` prints one list, `palpate list --all` every list of names\n",
+             report::format_table({"list", "entries", "what it is"}, rows));
 }
 
 void print(const loop::ChoiceList& list) {
@@ -64,7 +85,8 @@ void print(const loop::ChoiceList& list) {
   if (rows.empty()) rows.push_back({"-", "none in this build"});
   const std::vector<std::string> headers = orders ? std::vector<std::string>{"name", "order", "what it is"}
                                                   : std::vector<std::string>{"name", "what it is"};
-  fmt::print("{}\n", report::format_table(headers, rows));
+  fmt::print("{}\n",
+             report::format_table(headers, report::with_broken_lines(headers, rows, width_of_output())));
 }
 
 std::string in_short(std::vector<std::string> users) {
@@ -128,6 +150,12 @@ int list(const ListArguments& arguments) {
     print_names_page(lists);
     return 0;
   }
+  if (arguments.what.empty() && !arguments.all) {
+    print_overview(lists);
+    return 0;
+  }
+  if (!arguments.what.empty() && arguments.all)
+    fail("--all prints every list; leave \"{}\" out", arguments.what);
   std::vector<std::string> known = {kKeys, kStudyKeys};
   bool found = std::find(known.begin(), known.end(), arguments.what) != known.end();
   if (arguments.markdown && !found)
@@ -155,8 +183,10 @@ void add_list(CLI::App& app, Invocation& invocation) {
       "WHAT", arguments->what,
       "integrators, linear-solvers, materials, laws, tool-integrators, obstacles, contact-methods, "
       "contact-springs, contact-laws, generators, devices, device-profiles, motions, parts, cases, scenes; "
-      "default: all of these; or keys: every key of a scene with its unit, range, default and meaning; or "
+      "default: the names of these lists; or keys: every key of a scene with its unit, range, default and "
+      "meaning; or "
       "study-keys: the keys of a study");
+  command->add_flag("--all", arguments->all, "all lists of names");
   command->add_flag(
       "--markdown", arguments->markdown,
       "as a page of the documentation: docs/keys.md with keys, docs/study-keys.md with study-keys, "

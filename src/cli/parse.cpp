@@ -23,7 +23,7 @@ constexpr const char* kExamples = R"(Examples:
   palpate run my.toml --set body.0.youngs_modulus_pa=2e4 -o out/softer
   palpate touch                                  touch a head in your browser, in real time
   palpate new liver.obj --unit mm                a scene that touches your mesh, each number explained
-  palpate inspect press-ball                     parts that a scene uses and omits, sizes, memory
+  palpate inspect press-ball                     sizes, masses and gaps of a scene before it runs
   palpate export out/press-ball --to vtu         a run as files for other programs
   palpate model liver.obj -o liver.h5            a layered model of a closed surface
   palpate compare cantilever                     error against run time, for every integrator

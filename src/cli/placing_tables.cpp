@@ -24,8 +24,9 @@ void add_box(const std::string& name, const std::optional<Eigen::AlignedBox3d>& 
     rows.push_back({name, "unbounded", "-", "-"});
 }
 
+constexpr double kTouching = 2e-6;  // [m]; a tool that was placed has a smaller gap
+
 std::string relation_of(const loop::Clearance& c) {
-  constexpr double kTouching = 2e-6;  // [m]; a tool that was placed has a smaller gap
   if (c.gap.distance > kTouching) return "apart";
   if (c.gap.distance >= -kTouching) return "touching";
   const double length = c.way_out_m.norm();
@@ -50,15 +51,16 @@ void print_boxes(const loop::World& world) {
     fmt::print("{}\n", report::format_table({"bounding box", "size [mm]", "from [mm]", "to [mm]"}, rows));
 }
 
-void print_clearances(const loop::World& world) {
+void print_clearances(const loop::World& world, bool all) {
   for (const loop::ToolPlacement& p : world.placements)
     fmt::print("{} placed: moved by {:.4g} mm to ({}) mm, where it touches {}\n\n", p.tool, 1e3 * p.moved_m,
                in_millimetres(p.position_m), p.touched);
   Rows rows;
   try {
     for (const loop::Clearance& c : loop::clearances(world))
-      rows.push_back({c.first + " - " + c.second, fmt::format("{:.4g}", 1e3 * c.gap.distance), relation_of(c),
-                      c.in_contact ? "yes" : "no"});
+      if (all || c.in_contact || c.gap.distance <= kTouching)
+        rows.push_back({c.first + " - " + c.second, fmt::format("{:.4g}", 1e3 * c.gap.distance),
+                        relation_of(c), c.in_contact ? "yes" : "no"});
   } catch (const Error& error) {
     fmt::print("gaps at the start: {}\n\n", error.what());
     return;

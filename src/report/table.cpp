@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "core/csv.h"
 #include "palpate/core/error.h"
@@ -162,6 +163,33 @@ std::string format_table(const std::vector<std::string>& headers, Rows rows) {
   text += "\n";
   for (const auto& row : rows) text += line_of(row);
   return text;
+}
+
+Rows with_broken_lines(const std::vector<std::string>& headers, const Rows& rows, std::size_t width) {
+  constexpr std::size_t kNarrowest = 20;
+  std::size_t before = 0;
+  for (std::size_t c = 0; c + 1 < headers.size(); ++c) {
+    std::size_t widest = width_of(headers[c]);
+    for (const auto& row : rows) widest = std::max(widest, width_of(row.at(c)));
+    before += widest + 2;
+  }
+  if (width < before + kNarrowest) return rows;
+  Rows out;
+  for (const auto& row : rows) {
+    std::istringstream words(row.back());
+    std::string line;
+    out.push_back(row);
+    for (std::string word; words >> word;) {
+      if (!line.empty() && width_of(line) + 1 + width_of(word) > width - before) {
+        out.back().back() = line;
+        out.emplace_back(headers.size());
+        line.clear();
+      }
+      line += (line.empty() ? "" : " ") + word;
+    }
+    out.back().back() = line;
+  }
+  return out;
 }
 
 }  // namespace palpate::report

@@ -63,6 +63,11 @@ bool is_blank(std::string_view cell);
 /// do not shift the columns. Cells are formatted by shown_cell().
 std::string format_table(const std::vector<std::string>& headers, Rows rows);
 
+/// Returns the rows of a table in which no line of format_table() is longer than `width`: a text in the last
+/// column that is too long continues on rows whose other cells are empty.
+/// @param width  characters per line; at most 20 more than the other columns take: no line is broken
+Rows with_broken_lines(const std::vector<std::string>& headers, const Rows& rows, std::size_t width);
+
 /// Returns whether every cell that is neither empty nor "-" is a number, and there is at least one number:
 /// such a column is aligned to the right.
 bool is_numeric_column(const Rows& rows, std::size_t column);

@@ -41,7 +41,7 @@ step_s = 0.01
 
 class Memory(Case):
     def compare(self, *scene):
-        text = self.good("inspect", *scene)
+        text = self.good("inspect", "--all", *scene)
         said = float(re.search(r"estimated memory of a run \[MiB\] +(\d+)", text).group(1))
         with open(os.devnull, "w", encoding="utf-8") as null:
             process = subprocess.Popen([PROGRAM, "run", *scene, "--duration-s", "0.01", "-o", "x"],

@@ -176,7 +176,9 @@ class Results(Cli):
         self.assertLessEqual(set(verdicts), set(self.head_of_page("judged")))
 
     def test_lists(self):
-        everything = self.good("list")
+        everything = self.good("list", "--all")
+        overview = self.good("list")
+        self.assertLess(len(overview.splitlines()), 30)
         for what, member in {"integrators": "cvode-bdf", "linear-solvers": "cholmod",
                              "materials": "liver", "laws": "stable_neo_hookean",
                              "tool-integrators": "simbody-cpodes",
@@ -188,6 +190,9 @@ class Results(Cli):
                 one = self.good("list", what)
                 self.assertRegex(one, rf"(?m)^{member} ")
                 self.assertIn(one, everything)
+                entries = len(one.splitlines()) - 4  # without title, headers, rule and blank line
+                self.assertRegex(overview, rf"(?m)^{what} +{entries} ")
+        self.assertIn("--all", self.refused("list", "devices", "--all"))
 
     def test_models_are_made_once_and_kept(self):
         if not (PROGRAM.parent / "palpate-model").exists():
@@ -268,11 +273,21 @@ class Results(Cli):
                       self.refused("inspect", "press-ball", "--set", "contact.1.method=vertex"))
 
     def test_inspect_says_what_is_left_out(self):
-        text = self.good("inspect", "falling-ball")
+        text = self.good("inspect", "falling-ball", "--all")
         self.assertRegex(text, r"(?m)^tool +left out")
         self.assertRegex(text, r"(?m)^gl +left out")
         self.assertRegex(text, r"(?m)^unknowns \(velocities\) +\d+")
-        self.assertRegex(self.good("inspect", "press-ball"), r"(?m)^tool +in use")
+        self.assertRegex(self.good("inspect", "press-ball", "--all"), r"(?m)^tool +in use")
+
+    def test_inspect_answers_in_a_screen(self):
+        text = self.good("inspect", "press-ball")
+        self.assertLess(len(text.splitlines()), 16)
+        self.assertNotIn("left out", text)
+        self.assertRegex(text, r"(?m)^ball +309 +1280 +\d+ +0\.1\d* +5\d(\.\d+)? x 5\d(\.\d+)? x 5\d")
+        self.assertRegex(text, r"(?m)^tool - ball +3(\.\d+)? +apart +yes")
+        self.assertNotRegex(text, r"(?m)^tool - floor", "no contact, and far apart")
+        self.assertRegex(self.good("inspect", "press-ball", "--all"), r"(?m)^tool - floor +\d.* apart +no")
+        self.assertRegex(text, r"\d+ unknowns, cvode-bdf; 0.4 s in periods of 10 ms; a run needs about \d+ ")
 
 
 if __name__ == "__main__":

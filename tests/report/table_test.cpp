@@ -22,6 +22,21 @@ std::string message_of(const std::filesystem::path& path) {
 
 }  // namespace
 
+TEST(BrokenLines, FitTheWidthAndLoseNoWord) {
+  const std::vector<std::string> headers = {"name", "what it is"};
+  const report::Rows rows = {{"a", "one two three four five six seven eight nine ten"}, {"longer", "short"}};
+  const report::Rows broken = report::with_broken_lines(headers, rows, 30);
+  ASSERT_EQ(broken.size(), 4u);
+  EXPECT_EQ(broken[0], (std::vector<std::string>{"a", "one two three four"}));
+  EXPECT_EQ(broken[1], (std::vector<std::string>{"", "five six seven eight"}));
+  EXPECT_EQ(broken[2], (std::vector<std::string>{"", "nine ten"}));
+  EXPECT_EQ(broken[3], rows[1]);
+  std::istringstream lines(report::format_table(headers, broken));
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 30u) << line;
+  EXPECT_EQ(report::with_broken_lines(headers, rows, 0), rows) << "no terminal";
+  EXPECT_EQ(report::with_broken_lines(headers, rows, 25), rows) << "too narrow for words";
+}
+
 TEST(FormatTable, SetsNumbersToTheRightAndWordsToTheLeft) {
   const std::string text =
       report::format_table({"name", "error"}, {{"a", "1e-05"}, {"longer", "0.25"}, {"none", "-"}});
