@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <numbers>
@@ -24,6 +25,7 @@ namespace {
 
 struct NewArguments {
   std::string mesh, output, unit, up = "z", material = "liver";
+  double size = 0.0;         ///< Largest extent of the body [m]; 0: by the unit
   double tool_radius = 0.0;  ///< [m]; 0: by rule
   int tetrahedra = 0;        ///< Number for a surface that is filled; 0: the default
   bool force = false;
@@ -44,6 +46,7 @@ std::string command_text(const NewArguments& a) {
     out += fmt::format(" {} {}", option, value);
   };
   if (!a.unit.empty()) add("--unit", a.unit);
+  if (a.size > 0.0) add("--size-m", fmt::format("{:g}", a.size));
   if (a.up != "z") add("--up", a.up);
   add("--material", a.material);
   if (a.tool_radius > 0.0) add("--tool-radius-m", fmt::format("{:g}", a.tool_radius));
@@ -76,6 +79,7 @@ void make_model(const NewArguments& a, const fs::path& scene, loop::NewScene& ch
   const fs::path model = scene.parent_path() / (choice.name + ".h5");
   std::vector<std::string> words = {fs::absolute(a.mesh).string(), "-o", model.string(), "--up", a.up};
   if (!a.unit.empty()) words.insert(words.end(), {"--unit", a.unit});
+  if (a.size > 0.0) words.insert(words.end(), {"--scale", "1"});  // any size: the scene scales the model
   if (a.tetrahedra > 0) words.insert(words.end(), {"--tetrahedra", std::to_string(a.tetrahedra)});
   fmt::print("{}: filled with tetrahedra by palpate model; at most 10 minutes\n", a.mesh);
   std::fflush(stdout);
@@ -89,15 +93,6 @@ std::unique_ptr<loop::World> body_of(const loop::NewScene& choice, const std::st
   return loop::assemble(loop::body_alone(choice, scene));
 }
 
-/// Rejects a file whose size is implausible in metres, unless its unit is given.
-[[noreturn]] void refuse_size(const NewArguments& a, const Error& error) {
-  const std::string message = error.what();
-  if (a.unit.empty() && message.find("scale") != std::string::npos)
-    fail("{}: in metres its size is implausible: give the unit of its coordinates, --unit mm, cm or m ({})",
-         a.mesh, message);
-  throw error;
-}
-
 Vec3 size_of(const loop::Body& body) {
   return body.placed.rowwise().maxCoeff() - body.placed.rowwise().minCoeff();
 }
@@ -106,17 +101,19 @@ Vec3 size_of(const loop::Body& body) {
 void refuse_sizes(const NewArguments& a, const loop::World& world) {
   constexpr double kLargest = 5.0, kSmallest = 1e-3;  // [m]
   const double size = size_of(world.bodies.at(0)).maxCoeff();
-  if (a.unit.empty() && size > kLargest)
-    fail("{}: the body would be {:.3g} m large: give the unit of its coordinates, --unit mm, cm or m", a.mesh,
-         size);
+  if (a.unit.empty() && a.size == 0.0 && size > kLargest)
+    fail(
+        "{}: the body would be {:.3g} m large: give the unit of its coordinates, --unit mm, cm or m, or the "
+        "size of the body, --size-m",
+        a.mesh, size);
   if (size < kSmallest)
     fail("{}: the body would be {:.3g} mm large{}: choose a larger unit, --unit m or cm", a.mesh, 1e3 * size,
          a.unit.empty() ? "" : " with --unit " + a.unit);
 }
 
-/// Chooses the source of the body and assembles it.
-std::unique_ptr<loop::World> choose_body(const NewArguments& a, const fs::path& scene,
-                                         loop::NewScene& choice) {
+/// Chooses the source of the body and assembles it, in the unit of the file.
+std::unique_ptr<loop::World> choose_source(const NewArguments& a, const fs::path& scene,
+                                           loop::NewScene& choice) {
   const fs::path file = a.mesh;
   if (!fs::exists(file) && a.mesh.find_first_of("./") == std::string::npos) {
     choice.file = "model:" + a.mesh;
@@ -130,16 +127,52 @@ std::unique_ptr<loop::World> choose_body(const NewArguments& a, const fs::path& 
     const loop::NewScene requested = choice;
     use_tetrahedra(a, scene, choice);
     try {
-      return body_of(choice, scene.string());
+      loop::NewScene any_size = choice;  // refuse_sizes() judges the size
+      any_size.scale_given = true;
+      return body_of(any_size, scene.string());
     } catch (const Error& error) {
-      if (file.extension() != ".msh") refuse_size(a, error);
-      if (std::string(error.what()).find("scale") != std::string::npos) refuse_size(a, error);
+      if (file.extension() != ".msh") throw;
       fmt::print(stderr, "palpate: {}; palpate model tries it\n", error.what());
     }
     choice = requested;
   }
   make_model(a, scene, choice);
   return body_of(choice, scene.string());
+}
+
+/// Chooses the source of the body, scales it to the requested size, and assembles it.
+std::unique_ptr<loop::World> choose_body(const NewArguments& a, const fs::path& scene,
+                                         loop::NewScene& choice) {
+  choice.scale_given = a.size > 0.0;
+  std::unique_ptr<loop::World> out = choose_source(a, scene, choice);
+  if (a.size == 0.0) return out;
+  choice.scale *= a.size / size_of(out->bodies.at(0)).maxCoeff();
+  choice.scale_given = true;
+  return body_of(choice, scene.string());
+}
+
+/// Returns a length in millimetres to a micrometre, with four digits.
+std::string in_millimetres(double length_m) {
+  return fmt::format("{:.4g}", std::round(1e6 * length_m) / 1e3 + 0.0);  // + 0: no -0
+}
+
+void print_result(const NewArguments& a, const loop::World& world, const std::string& output) {
+  const loop::ToolPlacement& placed = world.placements.at(0);
+  const loop::Body& body = world.bodies[0];
+  const Vec3 size = size_of(body);
+  fmt::print("body: {} x {} x {} mm, {:.3g} kg of {}, {} nodes, {} tetrahedra\n", in_millimetres(size.x()),
+             in_millimetres(size.y()), in_millimetres(size.z()), body.masses.sum(), a.material,
+             body.report.nodes, body.report.elements);
+  if (fs::exists(a.mesh)) {
+    if (a.unit.empty() && a.size == 0.0)
+      fmt::print(
+          "      the file's numbers are taken as metres: --unit mm, or --size-m 0.2, if they are not\n");
+    if (a.up == "z") fmt::print("      the file's z axis is up: --up y if the body lies on its side\n");
+  }
+  fmt::print("tool: radius {} mm, touches the body at ({}, {}, {}) mm\nwritten: {}\n",
+             in_millimetres(world.description.tool->radius_m), in_millimetres(placed.touch_m.x()),
+             in_millimetres(placed.touch_m.y()), in_millimetres(placed.touch_m.z()), output);
+  fmt::print("next: palpate touch {0}, or palpate run {0} --picture --report\n", output);
 }
 
 int make_new(const NewArguments& a) {
@@ -162,18 +195,7 @@ int make_new(const NewArguments& a) {
   // assembled before it is written: a scene that does not touch is an error here
   const std::unique_ptr<loop::World> ready = loop::assemble(loop::parse(text, scene.string()));
   store::write_atomically(scene.string(), text);
-  const loop::ToolPlacement& placed = ready->placements.at(0);
-  const loop::Body& body = ready->bodies[0];
-  const Vec3 size = size_of(body);
-  fmt::print(
-      "body: {:.4g} x {:.4g} x {:.4g} mm{}, {:.3g} kg of {}, {} nodes, {} tetrahedra\n"
-      "tool: radius {:.3g} mm, touches the body at ({:.4g}, {:.4g}, {:.4g}) mm\n"
-      "written: {}\nnext: palpate run {} --picture --report\n",
-      1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z(),
-      a.unit.empty() && fs::exists(a.mesh) ? " (the file's numbers taken as metres; --unit mm if not)" : "",
-      body.masses.sum(), a.material, body.report.nodes, body.report.elements,
-      1e3 * ready->description.tool->radius_m, 1e3 * placed.touch_m.x(), 1e3 * placed.touch_m.y(),
-      1e3 * placed.touch_m.z(), output, output);
+  print_result(a, *ready, output);
   return 0;
 }
 
@@ -203,6 +225,12 @@ void add_new(CLI::App& app, Invocation& invocation) {
   command->add_option("--unit", arguments->unit, "unit of the file's coordinates; default m, if plausible")
       ->type_name("UNIT")
       ->check(CLI::IsMember({"mm", "cm", "m"}));
+  command
+      ->add_option("--size-m", arguments->size,
+                   "largest extent of the body [m], for a file in no unit; instead of --unit")
+      ->type_name("M")
+      ->check(positive)
+      ->excludes("--unit");
   command->add_option("--up", arguments->up, "axis of the file that becomes z, the vertical")
       ->type_name("AXIS")
       ->check(CLI::IsMember({"x", "y", "z"}))
@@ -223,7 +251,7 @@ void add_new(CLI::App& app, Invocation& invocation) {
   command->add_flag("--force", arguments->force, "overwrite the scene");
   command->footer(R"(Examples:
   palpate new liver.obj --unit mm                    liver.toml and liver.h5, its model
-  palpate new spot.obj --up y --material silicone -o cow.toml
+  palpate new spot.obj --up y --size-m 0.2 --material silicone -o cow.toml
   palpate new head --tool-radius-m 0.012
   palpate run liver.toml --picture --report          the force curve
 

@@ -31,7 +31,7 @@ class New(Cli):
         said = self.good("new", str(mesh), "-o", "it.toml", *options)
         text = (self.folder / "it.toml").read_text()
         scene = tomllib.loads(text)
-        self.assertIn("next: palpate run it.toml", said)
+        self.assertIn("next: palpate touch it.toml, or palpate run it.toml --picture --report", said)
         self.assertEqual(scene["tool"]["start"], "touching")
         bare = [line for line in text.splitlines()
                 if re.match(r"(stiffness|damping|radius|mass|rotational|quadrature)\w* = [0-9]", line)
@@ -82,6 +82,28 @@ class New(Cli):
                 self.touches(Path(DATA) / name, *options, "--tetrahedra", "2000", "--force", share=0.05)
                 self.assertTrue((self.folder / f"{Path(name).stem}.h5").exists())
 
+    def test_a_file_in_no_unit_takes_the_size_of_the_body(self):
+        said = self.good("new", str(TREE / "scenes/meshes/bracket.msh"), "--size-m", "0.15", "-o",
+                         "sized.toml")
+        self.assertIn("body: 150 x ", said)
+        self.assertNotIn("taken as metres", said)
+        scene = tomllib.loads((self.folder / "sized.toml").read_text())
+        self.assertAlmostEqual(scene["body"][0]["mesh"]["scale"], 0.15 / 60, 6)  # the file is 60 long
+        self.assertIn("bracket.msh --size-m 0.15", (self.folder / "sized.toml").read_text())
+        self.assertIn("--unit", self.refused("new", "a.obj", "--size-m", "0.1", "--unit", "mm"))
+
+    @unittest.skipUnless(HAS_MODEL, "this build makes no models")
+    def test_a_surface_in_no_unit_is_filled_and_scaled(self):
+        corners = [(x, y, z) for z in (0, 3000) for y in (0, 2000) for x in (0, 1000)]
+        faces = [(1, 3, 4), (1, 4, 2), (5, 6, 8), (5, 8, 7), (1, 2, 6), (1, 6, 5), (3, 7, 8), (3, 8, 4),
+                 (1, 5, 7), (1, 7, 3), (2, 4, 8), (2, 8, 6)]
+        (self.folder / "box.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in corners) +
+                                             "".join(f"f {a} {b} {c}\n" for a, b, c in faces))
+        said = self.good("new", "box.obj", "--size-m", "0.09", "--tetrahedra", "500")
+        self.assertRegex(said, r"body: (29\.\d+|30) x (59\.\d+|60) x (89\.\d+|90) mm, 0\.17\d? kg")
+        self.assertIn("the file's z axis is up: --up y if", said)
+        self.assertRegex(said, r"touches the body at \([-\d.]+, [-\d.]+, [-\d.]+\) mm", "no powers of ten")
+
     def test_refuses_in_one_line(self):
         mesh = str(TREE / "scenes/meshes/bracket.msh")
         self.assertIn("--unit mm, cm or m", self.refused("new", mesh, "-o", "a.toml"))
@@ -95,7 +117,7 @@ class New(Cli):
 
 class Placed(Cli):
     def test_inspect_prints_gaps_and_draws_the_start(self):
-        said = self.good("inspect", "press-ball", "--picture", "start.png")
+        said = self.good("inspect", "press-ball", "--all", "--picture", "start.png")
         self.assertRegex(said, r"(?m)^tool - ball +3(\.\d+)? +apart +yes")
         self.assertRegex(said, r"(?m)^ball +5\d")
         self.assertTrue((self.folder / "start.png").read_bytes().startswith(b"\x89PNG"))
