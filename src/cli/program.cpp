@@ -20,11 +20,29 @@
 namespace palpate::cli {
 namespace {
 
+/// Returns the message for words that no option and no positional takes: the first unknown option, with the
+/// nearest known one, or else the first word.
+std::string message_of_extras(const CLI::App& app) {
+  const std::vector<std::string> extras = app.remaining(true);
+  const auto option = std::find_if(extras.begin(), extras.end(),
+                                   [](const std::string& word) { return word.starts_with("-"); });
+  if (option == extras.end())
+    return fmt::format("\"{}\" is one argument too many", extras.empty() ? "" : extras.front());
+  const std::string name = option->substr(0, option->find('='));
+  std::vector<std::string> known;
+  for (const CLI::App* used : app.get_subcommands())
+    for (const CLI::Option* one : used->get_options())
+      for (const std::string& word : one->get_lnames()) known.push_back("--" + word);
+  const std::string nearest = suggestion(name, known);
+  return fmt::format("there is no option {}{}", name, nearest.starts_with(" (did") ? nearest : "");
+}
+
 /// Throws an error for an invalid command line and refers to the help of the command: the messages of CLI11
 /// name the option.
 void refuse(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
   std::string command = "palpate", message = error.what();
   for (const CLI::App* used : app.get_subcommands()) command += " " + used->get_name();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error)) message = message_of_extras(app);
   const std::vector<std::string> words(argv + 1, argv + argc);
   const auto first = std::find_if(words.begin(), words.end(),
                                   [](const std::string& word) { return !word.starts_with("-"); });

@@ -203,9 +203,11 @@ int stability_haptic(const StabilityArguments& a) {
   const std::vector<std::string> verdicts = verdicts_of(z, loop.tick_s, points, turning, scale);
   for (const std::string& verdict : verdicts) fmt::print("{}\n", verdict);
   fmt::print(
-      "\ndevice of {:g} kg and {:g} N s/m{}, tick {:g} ms, delay {} ticks; coupling {:g} N/m, {:g} N s/m\n\n",
+      "\ndevice of {:g} kg and {:g} N s/m{}, tick {:g} ms, delay {} tick{}; coupling {:g} N/m, {:g} N "
+      "s/m\n\n",
       loop.device.mass_kg, loop.device.damping_n_s_m, arm_text(loop.device), 1e3 * loop.tick_s,
-      loop.delay_ticks, loop.coupling_stiffness_n_m, loop.coupling_damping_n_s_m);
+      loop.delay_ticks, loop.delay_ticks == 1 ? "" : "s", loop.coupling_stiffness_n_m,
+      loop.coupling_damping_n_s_m);
   print_rows(z);
   fmt::print("\n");
   print_points(points, 1.0, "N/m");

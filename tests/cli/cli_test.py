@@ -42,6 +42,14 @@ class Help(Cli):
     def test_no_argument_is_a_question_for_help(self):
         self.assertEqual(self.good(), self.good("--help"))
 
+    def test_unknown_options_are_named_with_the_nearest_one(self):
+        self.assertEqual(self.refused("run", "press-ball", "--sett", "x=1"),
+                         'palpate: error: there is no option --sett (did you mean "--set"?); '
+                         'see `palpate run --help`\n')
+        self.assertIn("there is no option --xyzzy; see", self.refused("run", "press-ball", "--xyzzy=3"))
+        self.assertIn('"one-tet" is one argument too many; see `palpate run --help`',
+                      self.refused("run", "press-ball", "one-tet"))
+
     def test_help_names_every_list(self):
         known = re.search(r"\(known: (.*)\)", self.refused("list", "nothing"))[1].split(", ")
         self.assertGreater(len(known), 10)
