@@ -59,6 +59,19 @@ void take_file(TetMesh tets, const std::string& path, double scale, Body& body) 
   take_tets(std::move(tets), body);
 }
 
+/// Takes the edges of divided tetrahedra. @param edges  ends of those whose midpoints are the file's last
+/// nodes
+void take_midpoints(const std::vector<std::array<int, 2>>& edges, Body& body) {
+  if (edges.empty()) return;
+  std::vector<int> node_of_file(body.file_node.size());
+  for (std::size_t i = 0; i < body.file_node.size(); ++i)
+    node_of_file[static_cast<std::size_t>(body.file_node[i])] = static_cast<int>(i);
+  const std::size_t first = body.file_node.size() - edges.size();
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    body.midpoints.push_back({node_of_file[first + i], node_of_file[static_cast<std::size_t>(edges[i][0])],
+                              node_of_file[static_cast<std::size_t>(edges[i][1])]});
+}
+
 /// Takes the tetrahedra of a model and its nodal data.
 void take_model(LayeredModel& model, const std::string& path, double scale, Body& body) {
   take_file(std::move(model.tets), path, scale, body);
@@ -98,8 +111,10 @@ std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::strin
                                       Body& body) {
   const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
   if (spec.skin || spec.skeleton) {
-    LayeredModel model = store::read_model(path).model;
+    store::ModelFile file = store::read_model(path);
+    LayeredModel& model = file.model;
     take_model(model, path, spec.mesh.factor(), body);
+    take_midpoints(file.edges, body);
     if (spec.skeleton) take_skeleton(spec, path, model, body);
     if (!spec.skin) return std::move(model.regions);
     if (model.skin.faces.cols() == 0)
@@ -124,6 +139,8 @@ std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::strin
   if (spec.mesh.file.ends_with(".h5")) {
     take_file(store::read_mesh(path), path, spec.mesh.factor(), body);
     regions = store::read_regions(path, static_cast<int>(body.rest.tets.cols()));
+    if (!spec.attachments.empty())
+      take_midpoints(store::read_edges(path, static_cast<int>(body.rest.nodes.cols())), body);
   } else {
     take_tets(mesh::tet_mesh(spec.mesh, folder, &body.report, &regions), body);
   }

@@ -18,7 +18,7 @@ const BoneSpec* spec_of(const World& world, const std::string& bone) {
   return nullptr;
 }
 
-std::vector<int> nodes_inside(const World& world, const Body& body, const AttachmentSpec& spec) {
+std::vector<int> nodes_in_region(const World& world, const Body& body, const AttachmentSpec& spec) {
   if (spec.region == Selection::kBox) return fem::nodes_in_box(body.placed, spec.box_min_m, spec.box_max_m);
   if (spec.region == Selection::kSphere)
     return fem::nodes_in_sphere(body.placed, spec.centre_m, spec.radius_m);
@@ -32,6 +32,22 @@ std::vector<int> nodes_inside(const World& world, const Body& body, const Attach
   for (int i = 0; i < body.placed.cols(); ++i)
     if (bones::inside_bone(*bone, from_world * Vec3(body.placed.col(i)))) out.push_back(i);
   return out;
+}
+
+/// Returns the nodes that an attachment holds: of a divided mesh, the nodes of the mesh before its division
+/// that lie in the region, and the midpoints of edges whose ends are held.
+std::vector<int> nodes_inside(const World& world, const Body& body, const AttachmentSpec& spec) {
+  std::vector<int> inside = nodes_in_region(world, body, spec);
+  if (body.midpoints.empty()) return inside;
+  std::vector<char> held(static_cast<std::size_t>(body.placed.cols()), 0);
+  for (const int node : inside) held[static_cast<std::size_t>(node)] = 1;
+  for (const Midpoint& m : body.midpoints)
+    held[static_cast<std::size_t>(m.node)] =
+        static_cast<char>(held[static_cast<std::size_t>(m.a)] && held[static_cast<std::size_t>(m.b)]);
+  inside.clear();
+  for (std::size_t i = 0; i < held.size(); ++i)
+    if (held[i]) inside.push_back(static_cast<int>(i));
+  return inside;
 }
 
 void check_nodes(const Body& body, const AttachmentSpec& spec, const std::vector<int>& nodes) {
@@ -126,6 +142,33 @@ void take_dofs(const Body& body, const std::vector<int>& dofs, int first, std::s
   }
 }
 
+bool is_fixed(const AttachmentSpec& spec) { return spec.to.empty() && spec.keyframes.empty(); }
+
+/// Fixes the midpoints between two nodes that different attachments fix in the same direction. Before the
+/// division the edge between them did not move in it.
+void fix_between(World& world, const Body& body, const SoftBodySpec& tissue, OwnersOfDofs& owners) {
+  const int first = world.state.layout().find(body.block_id)->u_offset / 3;
+  const auto owner = [&](int node, int axis) {
+    const auto found = owners.find(3 * (first + node) + axis);
+    return found == owners.end() ? nullptr : &*found;
+  };
+  std::vector<int> dofs;
+  for (const Midpoint& m : body.midpoints)
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto *const a = owner(m.a, axis), *const b = owner(m.b, axis);
+      if (!a || !b || owner(m.node, axis)) continue;
+      if (!is_fixed(tissue.attachments[a->second]) || !is_fixed(tissue.attachments[b->second])) continue;
+      dofs.push_back(3 * (first + m.node) + axis);
+      owners.emplace(dofs.back(), a->second);
+    }
+  if (dofs.empty()) return;
+  std::sort(dofs.begin(), dofs.end());
+  VecX x0(static_cast<Eigen::Index>(dofs.size()));
+  for (std::size_t i = 0; i < dofs.size(); ++i)
+    x0[static_cast<Eigen::Index>(i)] = body.placed(dofs[i] % 3, dofs[i] / 3 - first);
+  world.system.add(fem::make_fixed(dofs, x0));
+}
+
 /// @param number  index of the attachment among those of the body
 void attach(World& world, const Body& body, const SoftBodySpec& tissue, std::size_t number,
             OwnersOfDofs& owners) {
@@ -166,6 +209,7 @@ void assemble_attachments(World& world) {
     for (std::size_t k = 0; k < spec.attachments.size(); ++k)
       at_place(world, fmt::format("body[{}].attachment[{}]", i, k), fmt::format("body \"{}\"", spec.name),
                [&] { attach(world, world.bodies[i], spec, k, owners); });
+    fix_between(world, world.bodies[i], spec, owners);
   }
 }
 

@@ -113,6 +113,14 @@ void write_regions(const ModelWriter& to, hid_t file, const std::vector<Material
   to.column(group, "density_factor", density);
 }
 
+void write_edges(const ModelWriter& to, hid_t file, const std::vector<std::array<int, 2>>& edges) {
+  if (edges.empty()) return;
+  Eigen::Matrix2Xi ends(2, static_cast<Eigen::Index>(edges.size()));
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    ends.col(static_cast<Eigen::Index>(i)) << edges[i][0], edges[i][1];
+  to.matrix(to.group(file, "refined"), "edges", ends);
+}
+
 void write_record(const ModelWriter& to, hid_t file, const ModelRecord& record) {
   std::vector<std::string> names;
   std::vector<double> values;
@@ -145,6 +153,7 @@ void write_model(const std::string& path, const ModelFile& file) {
   write_proxies(to, root, model.proxies);
   write_skeleton(to, root, model);
   write_regions(to, root, model.regions);
+  write_edges(to, root, file.edges);
   write_record(to, root, file.record);
   write_atomically(path, h5::image(root, path));
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 ///   skeleton/   names (one per line), parent, head, tail, head_radius, tail_radius, bone_of_node
 ///   regions/    names (one per line), tets, offsets, youngs_modulus_factor, density_factor
 ///               region r: tets[offsets[r] ... offsets[r + 1]), ascending; regions may overlap
+///   refined/    edges k x 2: the last k nodes are midpoints of edges between earlier nodes, in order
 ///   made/       source, source_hash, options, version, notes (one per line),
 ///               figure_names (one per line), figures
 /// A missing group is an empty part of the model.
@@ -36,6 +38,8 @@ struct ModelRecord {
 struct ModelFile {
   LayeredModel model;
   ModelRecord record;
+  /// For divided tetrahedra (mesh/refine.h): ends of the edge whose midpoint each of the last nodes is.
+  std::vector<std::array<int, 2>> edges = {};
 };
 
 /// Writes a model file atomically: a reader never sees an incomplete file.  @throws Error when it cannot be
@@ -53,6 +57,12 @@ ModelFile read_model(const std::string& path);
 /// @param tets  number of tetrahedra in the file
 /// @throws Error as read_model
 std::vector<MaterialRegion> read_regions(const std::string& path, int tets);
+
+/// Reads only the edges of divided tetrahedra; returns none where the file has none.
+/// @param path  file
+/// @param nodes  number of nodes in the file
+/// @throws Error as read_model
+std::vector<std::array<int, 2>> read_edges(const std::string& path, int nodes);
 
 /// Whether the file's format attribute is that of a model (read_mesh() also reads its tetrahedra).
 bool is_model(const std::string& path);

@@ -189,6 +189,21 @@ std::vector<MaterialRegion> regions_in(hid_t file, const std::string& path, Eige
   return out;
 }
 
+std::vector<std::array<int, 2>> edges_in(hid_t file, const std::string& path, Eigen::Index nodes) {
+  const Group group(file, "refined", path);
+  if (!group) return {};
+  const Eigen::Matrix2Xi ends = group.matrix<Eigen::Matrix2Xi>("edges", 2);
+  if (ends.cols() >= nodes)
+    fail("{}: {} midpoints, but the mesh has {} nodes", group.full("edges"), ends.cols(), nodes);
+  std::vector<std::array<int, 2>> out;
+  for (Eigen::Index i = 0; i < ends.cols(); ++i) {
+    const Eigen::Index node = nodes - ends.cols() + i;  // its ends come before it
+    for (int k = 0; k < 2; ++k) group.within("edges", ends(k, i), 0, node);
+    out.push_back({ends(0, i), ends(1, i)});
+  }
+  return out;
+}
+
 ModelRecord read_record(hid_t file, const std::string& path) {
   const Group group(file, "made", path);
   if (!group) return {};
@@ -215,6 +230,7 @@ ModelFile model_in(const std::string& path) {
   read_skeleton(file, path, out.model);
   read_proxies(file, path, out.model);
   out.model.regions = regions_in(file, path, out.model.tets.tets.cols());
+  out.edges = edges_in(file, path, out.model.tets.nodes.cols());
   out.record = read_record(file, path);
   return out;
 }
@@ -230,6 +246,14 @@ std::vector<MaterialRegion> read_regions(const std::string& path, int tets) {
     if (!is_model(path)) return {};
     const h5::Quiet quiet;
     return regions_in(h5::open_file(path), path, tets);
+  });
+}
+
+std::vector<std::array<int, 2>> read_edges(const std::string& path, int nodes) {
+  return rehearsed(path, "HDF5", [&]() -> std::vector<std::array<int, 2>> {
+    if (!is_model(path)) return {};
+    const h5::Quiet quiet;
+    return edges_in(h5::open_file(path), path, nodes);
   });
 }
 

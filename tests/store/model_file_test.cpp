@@ -40,6 +40,27 @@ store::ModelFile small_model() {
   return out;
 }
 
+TEST(ModelFile, KeepsTheEdgesOfADividedMeshAndRejectsEdgesThatComeLater) {
+  const sample_run::Folder folder;
+  store::ModelFile requested = small_model();
+  store::write_model(folder / "m.h5", requested);
+  EXPECT_TRUE(store::read_edges(folder / "m.h5", 5).empty()) << "not divided";
+  requested.edges = {{0, 1}, {3, 2}};  // nodes 3 and 4 are midpoints; node 3 comes before node 4
+  store::write_model(folder / "m.h5", requested);
+  EXPECT_EQ(store::read_edges(folder / "m.h5", 5), requested.edges);
+  EXPECT_EQ(store::read_model(folder / "m.h5").edges, requested.edges);
+  requested.edges = {{0, 3}, {1, 2}};
+  store::write_model(folder / "m.h5", requested);
+  try {
+    store::read_edges(folder / "m.h5", 5);
+    FAIL() << "node 3 is not the midpoint of an edge of its own";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("\"refined/edges\" refers to 3, must lie in [0, 3)"),
+              std::string::npos)
+        << e.what();
+  }
+}
+
 TEST(ModelFile, RoundTripOfEverything) {
   const sample_run::Folder folder;
   const store::ModelFile requested = small_model();

@@ -52,6 +52,12 @@ struct Region {
   bool own_stiffness = false;     ///< Whether the scene sets its Young's modulus.
 };
 
+/// Node that is the midpoint of an edge between two others (compare --mesh divides meshes).
+struct Midpoint {
+  int node = -1;       ///< The midpoint.
+  int a = -1, b = -1;  ///< Ends of the edge.
+};
+
 /// Assembled soft body.
 struct Body {
   std::string name;   ///< Name in the scene.
@@ -61,8 +67,11 @@ struct Body {
   TetMesh rest;
   std::vector<int> file_node;  ///< Index of each node in that file, from zero.
   Points placed;               ///< Rest positions in the world, at the start of the simulation.
-  mesh::Boundary boundary;     ///< Surface of the tetrahedra; always present.
-  std::optional<Skin> skin;    ///< Only if the scene enables it.
+  /// Midpoints of a divided mesh, each after its ends; empty: the mesh is not divided. An attachment holds a
+  /// midpoint where it holds both ends, so that the part that is held does not change with the division.
+  std::vector<Midpoint> midpoints = {};
+  mesh::Boundary boundary;   ///< Surface of the tetrahedra; always present.
+  std::optional<Skin> skin;  ///< Only if the scene enables it.
   /// Bones of the model file in the world, at the start, if the scene enables them; else empty.
   Skeleton skeleton;
   std::vector<int> bone_of_node;  ///< Bone of `skeleton` that carries each node, -1: none.

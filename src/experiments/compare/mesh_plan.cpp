@@ -24,6 +24,12 @@ std::string set_key(const std::string& key, const std::string& value) { return k
 
 std::string in_ms(double s) { return fmt::format("{:.4g} ms", 1e3 * s); }
 
+/// Returns whether the generator makes the finer meshes of a body. Those of a curved body are rounder, and an
+/// attachment would hold other parts of it: with attachments, the scene's mesh is divided.
+bool keeps_formula(const SoftBodySpec& body) {
+  return body.mesh.generator == "box" || body.mesh.generator == "tet" || body.attachments.empty();
+}
+
 bool divides_elements(const MeshSpec& mesh) { return !mesh.file.empty() || mesh.generator != "tet"; }
 
 /// Kind of contact, by what limits its accuracy.
@@ -48,8 +54,11 @@ void add_meshes(const Description& d, const std::string& variable, int divisions
     const bool elements = is_for(variable, kElements) && divides_elements(body.mesh);
     const bool skin = is_for(variable, kSkin) && body.skin && !scene::is_in_images(d, body.name);
     if (body.mesh.file.empty()) {
-      if (elements)
+      if (elements && keeps_formula(body))
         out.push_back(set_key(key + "element_size_m", std::ldexp(body.mesh.element_size_m, -divisions)));
+      else if (elements)
+        out.push_back(fmt::format("body.{}.mesh={{file=\"{}\",scale=1.0}}", b,
+                                  meshes.path(body.mesh, folder, divisions, 0)));
     } else if (elements || skin) {
       out.push_back(set_key(key + "file",
                             meshes.path(body.mesh, folder, elements ? divisions : 0, skin ? divisions : 0)));

@@ -19,7 +19,13 @@ namespace fs = std::filesystem;
 
 constexpr int kChildren = 8;
 
-/// Reads the tetrahedra of any file, with their regions, or a whole model.
+/// Returns a text that distinguishes the mesh of a generator from others.
+std::string text_of(const MeshSpec& spec) {
+  return fmt::format("{} {} {} {} {} {} {} {}", spec.generator, spec.size_m.x(), spec.size_m.y(),
+                     spec.size_m.z(), spec.radius_m, spec.length_m, spec.element_size_m, spec.grading);
+}
+
+/// Reads the tetrahedra of any file, with their regions, or a whole model; or generates them.
 store::ModelFile read(const MeshSpec& spec, const fs::path& path, const std::string& scene_folder) {
   store::ModelFile out;
   if (path.extension() == ".h5") {
@@ -33,9 +39,11 @@ store::ModelFile read(const MeshSpec& spec, const fs::path& path, const std::str
   return out;
 }
 
-void refine_tets(LayeredModel& model) {
+void refine_tets(store::ModelFile& file) {
+  LayeredModel& model = file.model;
   mesh::RefinedTets fine = mesh::refine(model.tets);
   model.tets = std::move(fine.mesh);
+  file.edges.insert(file.edges.end(), fine.edges.begin(), fine.edges.end());
   std::vector<int>& bones = model.bone_of_node;
   if (!bones.empty())
     for (const auto& [a, b] : fine.edges) {
@@ -61,8 +69,11 @@ void RefinedMeshes::make_shape(const std::string& name, const std::string& from,
 }
 
 std::string RefinedMeshes::path(const MeshSpec& spec, const std::string& scene_folder, int tets, int skin) {
-  const fs::path source = fs::absolute(fs::path(scene_folder) / spec.file);
-  const std::string name = fmt::format("{}-tets-{}-skin-{}", source.string(), tets, skin);
+  const bool generated = spec.file.empty();
+  const fs::path source =
+      generated ? fs::path(spec.generator) : fs::absolute(fs::path(scene_folder) / spec.file);
+  const std::string name =
+      fmt::format("{}-tets-{}-skin-{}", generated ? text_of(spec) : source.string(), tets, skin);
   if (const auto found = made_.find(name); found != made_.end()) return found->second;
 
   std::error_code failed;
@@ -75,13 +86,16 @@ std::string RefinedMeshes::path(const MeshSpec& spec, const std::string& scene_f
     make_shape(shape, source.string(), tets, skin, out.string());
     return made_[name] = out.string();
   }
-  if (tets < 0 || skin < 0) fail("{}: a mesh from a file has no coarser level", spec.file);
+  if (tets < 0 || skin < 0)
+    fail("{}: {} has no coarser level; --coarser 0 omits it{}", source.filename().string(),
+         generated ? "a curved body with attachments" : "a mesh from a file",
+         generated ? ", and a larger element_size_m begins there" : "");
   store::ModelFile file = read(spec, source, scene_folder);
   if (skin > 0) file.model.proxies.clear();  // They list the vertices of the coarse skin.
   mesh::Provenance from;
   from.source = source.string();
   mesh::check_tets(file.model.tets, from);
-  for (int i = 0; i < tets; ++i) refine_tets(file.model);
+  for (int i = 0; i < tets; ++i) refine_tets(file);
   for (int i = 0; i < skin; ++i) file.model.skin = mesh::refine(file.model.skin);
   if (file.model.skin.vertices.cols() > 0)
     file.model.embedding = mesh::embed(file.model.tets, file.model.skin.vertices);

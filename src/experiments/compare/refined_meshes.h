@@ -25,8 +25,9 @@ class RefinedMeshes {
   /// are divided into four `skin` times.  A shape of the model program ("model:head") with other tetrahedra
   /// is made anew from its formula, with eight times as many; then the numbers may be negative.  Otherwise
   /// shape, materials and bones stay as they are; a new node belongs to a bone where both ends of its edge
-  /// do.  A skin is embedded anew.
-  /// @param spec  mesh with a file
+  /// do.  A skin is embedded anew.  The copy lists the edges whose midpoints its new nodes are, so that
+  /// attachments hold the same part of the body.
+  /// @param spec  mesh with a file or a generator, whose mesh is divided as one from a file
   /// @param scene_folder  base of a relative path
   /// @throws Error where the file cannot be read or written, or its skin cannot be embedded
   std::string path(const MeshSpec& spec, const std::string& scene_folder, int tets, int skin);

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "experiments/compare/mesh_plan.h"
+#include "experiments/compare/refined_meshes.h"
 #include "experiments/compare/scenes.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/generators.h"
@@ -107,6 +110,115 @@ TEST(Mesh, TheEstimateOfADividedFileContainsTimoshenkosDeflection) {
   options.folder = folder.string();
   expect_contains_the_deflection(
       compare_here(bar("mesh = { file = \"" + file + "\", scale = 1.0 }\n"), options), 0.8, 0.06);
+}
+
+/// A ball that stands on the middle triangle of a face and sags under its weight, in equilibrium. Its lowest
+/// three nodes are glued; those around them slide in a cup.
+std::string standing_ball(double lowest, const std::string& mesh) {
+  return R"([scene]
+name = "ball"
+duration_s = 0.01
+gravity_m_s2 = [0.0, 0.0, -9.81]
+[[body]]
+name = "ball"
+rotation_vector_rad = [0.6755, -0.6755, 0.0]
+youngs_modulus_pa = 1e6
+poissons_ratio = 0.2
+density_kg_m3 = 1000.0
+)" + mesh +
+         fmt::format(R"(
+[[body.attachment]]
+box_min_m = [-1, -1, -1]
+box_max_m = [1, 1, {0}]
+[[body.attachment]]
+box_min_m = [-1, -1, {0}]
+box_max_m = [1, 1, {1}]
+axes = "xy"
+[integrator]
+name = "kinsol-static"
+)",
+                     lowest + 1e-6, lowest + 0.012);
+}
+const std::string kBall = "mesh = { generator = \"ball\", radius_m = 0.03, element_size_m = 0.0156 }";
+double lowest_node() {
+  const auto world = loop::assemble(loop::parse(standing_ball(0.0, kBall), "ball.toml"));
+  return world->bodies[0].placed.row(2).minCoeff();
+}
+
+/// Number of edges of the only body whose ends are both held along an axis.
+std::size_t held_edges(const loop::World& world, int axis) {
+  const std::vector<int>& held = world.system.driven_dofs();
+  const auto is_held = [&](int node) {
+    return std::find(held.begin(), held.end(), 3 * node + axis) != held.end();
+  };
+  std::set<std::pair<int, int>> edges;
+  const Tets& tets = world.bodies[0].rest.tets;
+  for (Eigen::Index t = 0; t < tets.cols(); ++t)
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 4; ++k)
+        if (tets(i, t) < tets(k, t) && is_held(tets(i, t)) && is_held(tets(k, t)))
+          edges.emplace(tets(i, t), tets(k, t));
+  return edges.size();
+}
+
+// Nodes that a division adds are held where the edge that they halve did not move before, so that the held
+// part of the body stays the same: a triangle remains one, and all below the border slides in the cup.
+TEST(Mesh, AttachmentsHoldTheSamePartOfADividedBody) {
+  const TemporaryFolder folder;
+  compare::RefinedMeshes meshes(folder.string(), {});
+  const scene::Description coarse = loop::parse(standing_ball(lowest_node(), kBall), "ball.toml");
+  const auto held = [](const loop::World& world, int axis) {
+    std::vector<Vec3> out;
+    for (const int dof : world.system.driven_dofs())
+      if (dof % 3 == axis) out.emplace_back(world.bodies[0].placed.col(dof / 3));
+    return out;
+  };
+  const auto before = loop::assemble(coarse);
+  ASSERT_EQ(held(*before, 2).size(), 3u);
+  const std::size_t cup = held(*before, 0).size();
+  ASSERT_GT(cup, 6u);
+  for (int divisions = 1; divisions <= 2; ++divisions) {
+    const std::vector<std::string> overrides =
+        compare::mesh_overrides(coarse, compare::kElements, divisions, meshes);
+    ASSERT_EQ(overrides.size(), 1u);
+    const auto after =
+        loop::assemble(loop::parse(standing_ball(lowest_node(), kBall), "ball.toml", overrides));
+    EXPECT_EQ(after->bodies[0].report.elements, before->bodies[0].report.elements << (3 * divisions));
+    // a triangle whose edges are halved d times has (2^d + 1)(2^d + 2)/2 nodes
+    const std::vector<Vec3> glued = held(*after, 2);
+    EXPECT_EQ(glued.size(), divisions == 1 ? 6u : 15u);
+    for (const Vec3& x : glued) EXPECT_NEAR(x.z(), lowest_node(), 1e-6);
+    // nodes are held in x where the nodes of the coarse mesh around them are: convex combinations of those
+    double highest = -1.0;
+    for (const Vec3& x : held(*before, 0)) highest = std::max(highest, x.z());
+    for (const Vec3& x : held(*after, 0)) EXPECT_LE(x.z(), highest + 1e-12);
+    if (divisions == 1) {
+      EXPECT_EQ(held(*after, 0).size(), cup + held_edges(*before, 0)) << "one more per edge";
+    }
+  }
+}
+
+// The lowest third of a ball is held. Finer balls by the formula are rounder, and their borders of the held
+// part lie elsewhere: their sags oscillate. Divided elements converge with the order 1 of a clamped edge.
+TEST(Mesh, ABodyWithAttachmentsConvergesWithItsElements) {
+  const TemporaryFolder folder;
+  compare::MeshOptions options = only({compare::kElements});
+  options.folder = folder.string();
+  const std::string ball = "mesh = { generator = \"ball\", radius_m = 0.03, element_size_m = 0.0078 }";
+  const scene::Description scene =
+      loop::parse(standing_ball(-0.028, ball), "ball.toml",
+                  {"body.0.attachment.1.axes=xyz", "body.0.attachment.1.box_max_m.2=-0.016"});
+  const MeshComparison c = compare_here(scene, options);
+  const MeshVariable& elements = variable_of(c, compare::kElements);
+  ASSERT_EQ(elements.levels.size(), 3u);
+  for (const compare::MeshLevel& level : elements.levels)
+    ASSERT_EQ(level.status, Status::kOk) << level.reason;
+  EXPECT_EQ(elements.levels[2].elements, 64 * elements.levels[0].elements);
+  const compare::MeshError& peak = elements.errors[0];
+  EXPECT_EQ(peak.limit.kind, Convergence::kAsymptotic);
+  EXPECT_GT(peak.limit.order, 0.85);
+  EXPECT_LT(peak.limit.order, 1.3);
+  EXPECT_LT(peak.limit.uncertainty, 0.1 * peak.limit.value);
 }
 
 TEST(Mesh, AResolutionThatTheSceneLacksIsReported) {
