@@ -60,6 +60,15 @@ void bind_hand(py::module_& module) {
   py::class_<HandOf>(module, "Hand", "Motion of one hand and force on it so far, one row per tick.")
       .def_readonly("name", &HandOf::name)
       .def_property_readonly(
+          "start_position",
+          [](const HandOf& self) {
+            const Simulation::Lease lease(*self.simulation);
+            const Kept<Vec3> kept(
+                scene::hands_of(self.simulation->world().description)[self.index].tool->position_m);
+            return rows(kept.get().data(), 3, kept.owner());
+          },
+          "Position of the tool at the start, (3,) [m]; with start = \"touching\", where it touches.")
+      .def_property_readonly(
           "times",
           [](const HandOf& self) {
             return tick_rows(
@@ -94,6 +103,10 @@ void bind_hand(py::module_& module) {
       .def_property_readonly("force", &last_force, "Force at the last tick, (3,) [N]; zero before the first.")
       .def_property_readonly("torque", &last_torque,
                              "Torque at the last tick, (3,) [N m]; zero before the first.")
+      .def("__repr__",
+           [](const HandOf& self) {
+             return fmt::format("<palpate.Hand \"{}\" of {} ticks>", self.name, ticks_of(self)->size());
+           })
       .def("__len__", [](const HandOf& self) { return ticks_of(self)->size(); });
 }
 

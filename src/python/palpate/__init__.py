@@ -17,7 +17,7 @@ Run a scene with the files of `palpate run`, in virtual or in real time:
 
     run = palpate.run("press-ball", folder="out", picture=True)
 
-Scenes        load, Scene, make_model (models of surfaces)
+Scenes        load, Scene, new_scene (a scene that touches a mesh), make_model (models of surfaces)
 Simulations   Simulation, and its Body, Bone, Hand, Contact; HandlePose for a function that moves a hand
 Runs          run, resume, movie; Run
 Live          touch (a scene in a cell of a notebook, whose tool the mouse moves); Touch
@@ -34,10 +34,10 @@ with settings_of_the_program():
                            Simulation, load, validate)
 
 from ._compare import Comparison, compare
-from ._model import make_model
+from ._model import make_model, new_scene
 from ._run import Run, movie, resume, run
 from ._touch import Touch, touch
 
 __all__ = ["Body", "Bone", "Comparison", "Contact", "Error", "Hand", "HandlePose", "IntegratorError",
            "Measurement", "Run", "Scene", "Simulation", "Touch", "compare", "load", "make_model", "movie",
-           "resume", "run", "touch", "validate"]
+           "new_scene", "resume", "run", "touch", "validate"]

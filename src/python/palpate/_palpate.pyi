@@ -141,6 +141,9 @@ class Hand:
     @property
     def name(self) -> str: ...
     @property
+    def start_position(self) -> _Floats:
+        """Position of the tool at the start, (3,) [m]; with start = "touching", where it touches."""
+    @property
     def times(self) -> _Floats:
         """Time at the end of each tick, (t,) [s]."""
     @property
