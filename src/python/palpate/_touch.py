@@ -120,8 +120,9 @@ def touch(scene: Scene | str | os.PathLike[str] = "touch-head", *, scheme: str =
     """Runs a scene in real time and serves its page, on which the mouse moves the tool.
 
     `scene` is a Scene, a file or the name of an included scene; a Scene made from a dict or a text is written
-    to a file until the end.  `scheme` and `port` are the options of `palpate touch`.  Returns at once, with a
-    Touch that a notebook shows as the page, `height_px` high.  The page can be opened on this machine only.
+    to a file until the end.  `scheme` and `port` are the options of `palpate touch`.  Returns once the server
+    listens, with a Touch that a notebook shows as the page, `height_px` high, while the scene is assembled.
+    The page can be opened on this machine only.
     Raises Error for invalid input, and if the program is missing or was built without its server.
     """
     command = [program("touch"), "touch"]
