@@ -38,10 +38,12 @@ void add_gaps(const loop::World& world, const loop::RunResult& result, Remarks& 
   }
 }
 
-/// Adds the event counts of a device, with "packets_stale" printed as "3 packets stale".
+/// Adds the counters of a device, with "packets_stale" printed as "3 packets stale": the first one, of what
+/// arrived, and those of events that occurred.
 void add_device_counts(const loop::World& world, std::size_t hand, Remarks& out) {
   std::string text;
   for (const auto& [name, count] : loop::tallies_of(world, hand)) {
+    if (!text.empty() && count == 0) continue;
     std::string words = name;
     std::replace(words.begin(), words.end(), '_', ' ');
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, words);
