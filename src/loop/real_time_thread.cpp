@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "core/team.h"
+#include "core/helper_scheduling.h"
 
 namespace palpate::loop {
 namespace {
@@ -89,29 +89,19 @@ void claim_real_time(RealTimeResult& out) {
 
 void release_memory() { munlockall(); }
 
-// A helper without a processor stops the loop at its next barrier. Where SCHED_FIFO is not permitted helpers
-// stay as they are.
-void RealTimeClaim::schedule_helpers(int policy, const sched_param& parameters) const {
-  if (threads_ < 2) return;
-  const pthread_t caller = pthread_self();
-  Team team(threads_);
-  team.run([&](int) {
-    if (!pthread_equal(pthread_self(), caller)) pthread_setschedparam(pthread_self(), policy, &parameters);
-    team.barrier();  // each thread takes one
-  });
-}
-
 RealTimeClaim::RealTimeClaim(RealTimeResult& out, int threads) : threads_(threads) {
   pthread_getaffinity_np(pthread_self(), sizeof processors_, &processors_);
   pthread_getschedparam(pthread_self(), &policy_, &parameters_);
   sched_param helpers{};
   helpers.sched_priority = kPriority - 1;
-  schedule_helpers(SCHED_FIFO, helpers);
+  // The loop waits for a helper that has begun a task. Where SCHED_FIFO is not permitted helpers stay as they
+  // are.
+  if (threads_ > 1) workers::schedule_helpers(threads_, SCHED_FIFO, helpers);
   claim_real_time(out);
 }
 
 RealTimeClaim::~RealTimeClaim() {
-  schedule_helpers(policy_, parameters_);
+  if (threads_ > 1) workers::schedule_helpers(threads_, policy_, parameters_);
   pthread_setschedparam(pthread_self(), policy_, &parameters_);
   pthread_setaffinity_np(pthread_self(), sizeof processors_, &processors_);
   release_memory();

@@ -36,8 +36,6 @@ class RealTimeClaim {
   RealTimeClaim& operator=(const RealTimeClaim&) = delete;
 
  private:
-  void schedule_helpers(int policy, const sched_param& parameters) const;
-
   int threads_;
   cpu_set_t processors_{};
   sched_param parameters_{};

@@ -7,11 +7,11 @@
 #include <atomic>
 #include <cstdlib>
 #include <set>
+#include <string>
 #include <thread>
 
 #include <gtest/gtest.h>
 
-#include "core/team.h"
 #include "palpate/core/error.h"
 
 using namespace palpate;
@@ -108,23 +108,67 @@ TEST(Workers, CountsTheTasksOfEachThread) {
   EXPECT_EQ(workers::tasks_of(0) + workers::tasks_of(1), before + 40);
 }
 
-/// Exit code of a forked child that uses the pool: 0 if loops and teams work there.
+/// Exit code of a forked child that uses the pool: 0 if loops work there.
 int pool_in_child() {
   const pid_t child = fork();
   if (child == 0) {
     alarm(60);
     std::atomic<int> sum{0};
     workers::for_each(100, [&](int task, int) { sum += task; });
-    Team team(3);
-    team.run([&](int k) {
-      sum += 10000 * (k + 1);
-      team.barrier();
-    });
-    std::exit(sum == 4950 + 60000 ? 0 : 1);  // runs static destructors as well
+    std::exit(sum == 4950 ? 0 : 1);  // runs static destructors as well
   }
   int status = -1;
   waitpid(child, &status, 0);
   return status;
+}
+
+// Two threads, so that the order is determined: the first thread goes up, the second one down, until they
+// meet.
+TEST(Workers, TakesTasksFromBothEnds) {
+  const workers::Count two(2);
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    std::array<int, 40> worker_of{}, place_of{};
+    std::array<int, 2> ran{};
+    workers::for_each(
+        40,
+        [&](int task, int worker) {
+          worker_of[static_cast<std::size_t>(task)] = worker;
+          place_of[static_cast<std::size_t>(task)] = ran[static_cast<std::size_t>(worker)]++;
+        },
+        workers::Order::kFromBothEnds);
+    ASSERT_EQ(ran[0] + ran[1], 40);
+    for (int task = 0; task < 40; ++task) {
+      ASSERT_EQ(worker_of[static_cast<std::size_t>(task)], task < ran[0] ? 0 : 1);
+      ASSERT_EQ(place_of[static_cast<std::size_t>(task)], task < ran[0] ? task : 39 - task);
+    }
+  }
+}
+
+TEST(Workers, ThrowsTheExceptionOfTheFirstTaskThatThrew) {
+  for (const int threads : {1, 2, 3}) {
+    const workers::Count count(threads);
+    for (int repeat = 0; repeat < 100; ++repeat) {
+      std::atomic<int> ran{0};
+      std::string message;
+      try {
+        workers::for_each(30, [&](int task, int) {
+          ++ran;
+          if (task % 7 == 3) fail("task {}", task);
+        });
+      } catch (const Error& e) { message = e.what(); }
+      ASSERT_EQ(message, "task 3");
+      ASSERT_EQ(ran, threads == 1 ? 4 : 30);
+    }
+    expect_every_task_once(50);  // the pool is as before
+  }
+}
+
+TEST(Workers, RejectsMoreTasksThanALoopHas) {
+  const workers::Count two(2);
+  EXPECT_THROW(workers::for_each(1 << 16, [](int, int) {}), InternalError);
+  std::atomic<int> ran{0};
+  workers::for_each((1 << 16) - 1, [&](int, int) { ++ran; });
+  EXPECT_EQ(ran, (1 << 16) - 1);
 }
 
 TEST(Workers, AForkedChildHasAPoolOfItsOwn) {

@@ -4,7 +4,7 @@
 
 #include "core/clock.h"
 #include "core/huge_pages.h"
-#include "core/team.h"
+#include "palpate/core/workers.h"
 #include "product/fem.h"
 
 namespace palpate::bench {
@@ -15,14 +15,21 @@ constexpr std::size_t kSmallest = std::size_t{1} << 18, kLargest = std::size_t{1
 constexpr double kMeasureFor = 0.012;
 constexpr int kLeastRepeats = 3;
 
-/// Returns the best bandwidth of several passes of a team over `bytes` [GB/s].
+/// Calls pass(k) for k = 0 ... count() - 1, all threads together.
 template <class Pass>
-double fastest_gb_s(Team& team, double bytes, double measure_for, Pass&& pass) {
+void on_all_threads(Pass&& pass) {
+  workers::for_each(
+      workers::count(), [&](int k, int) { pass(k); }, workers::Order::kFromBothEnds);
+}
+
+/// Returns the best bandwidth of several passes of all threads over `bytes` [GB/s].
+template <class Pass>
+double fastest_gb_s(double bytes, double measure_for, Pass&& pass) {
   double best = 0.0;
   const double begin = wall_seconds();
   for (int r = 0; r < kLeastRepeats || wall_seconds() - begin < measure_for; ++r) {
     const double start = wall_seconds();
-    team.run(pass);
+    on_all_threads(pass);
     best = std::max(best, 1e-9 * bytes / (wall_seconds() - start));
   }
   return best;
@@ -61,10 +68,10 @@ void write_all(double* to, std::size_t count, double value) {
 }
 
 /// Returns the bandwidth of copying one half of `memory` to the other; read and write counted.
-double copy_gb_s(Team& team, std::vector<double>& memory, std::size_t bytes, double measure_for) {
+double copy_gb_s(std::vector<double>& memory, std::size_t bytes, double measure_for) {
   const std::size_t half = bytes / sizeof(double) / 2;
-  return fastest_gb_s(team, static_cast<double>(2 * half * sizeof(double)), measure_for, [&](int k) {
-    const auto [first, last] = share(half, k, team.size());
+  return fastest_gb_s(static_cast<double>(2 * half * sizeof(double)), measure_for, [&](int k) {
+    const auto [first, last] = share(half, k, workers::count());
     std::copy(memory.data() + first, memory.data() + last, memory.data() + half + first);
   });
 }
@@ -103,13 +110,13 @@ multiply_add_doubles(double seed) {
   return multiply_add<Line, 8>(seed, kRounds);
 }
 
-double gflop_s(Team& team, double (*work)(double), int lanes) {
-  std::vector<double> sums(static_cast<std::size_t>(team.size()));
+double gflop_s(double (*work)(double), int lanes) {
+  std::vector<double> sums(static_cast<std::size_t>(workers::count()));
   double best = 0.0;
   for (int r = 0; r < 4; ++r) {
     const double start = wall_seconds();
-    team.run([&](int k) { sums[static_cast<std::size_t>(k)] = work(static_cast<double>(r)); });
-    const double operations = static_cast<double>(kOperations) * lanes * kRounds * team.size();
+    on_all_threads([&](int k) { sums[static_cast<std::size_t>(k)] = work(static_cast<double>(r)); });
+    const double operations = static_cast<double>(kOperations) * lanes * kRounds * workers::count();
     if (sums[0] > 0.0) best = std::max(best, 1e-9 * operations / (wall_seconds() - start));
   }
   return best;
@@ -137,7 +144,7 @@ double MachineLimits::write_gb_s(double working_set) const {
 }
 
 MachineLimits measure_limits(int threads) {
-  Team team(threads);
+  const workers::Count count(threads);
   MachineLimits out;
   out.threads = threads;
   std::vector<double> memory(kLargest / sizeof(double), 1.0), sums(static_cast<std::size_t>(threads));
@@ -146,20 +153,20 @@ MachineLimits measure_limits(int threads) {
     const std::size_t count = bytes / sizeof(double);
     Bandwidth b;
     b.bytes = static_cast<double>(bytes);
-    b.read_gb_s = fastest_gb_s(team, b.bytes, kMeasureFor, [&](int k) {
+    b.read_gb_s = fastest_gb_s(b.bytes, kMeasureFor, [&](int k) {
       const auto [first, last] = share(count, k, threads);
       sums[static_cast<std::size_t>(k)] += read_all(memory.data() + first, last - first);
     });
-    b.write_gb_s = fastest_gb_s(team, b.bytes, kMeasureFor, [&](int k) {
+    b.write_gb_s = fastest_gb_s(b.bytes, kMeasureFor, [&](int k) {
       const auto [first, last] = share(count, k, threads);
       write_all(memory.data() + first, last - first, 1.0);
     });
     out.bandwidths.push_back(b);
   }
-  out.small_copy_gb_s = copy_gb_s(team, memory, std::size_t{16} << 20, 0.05);
-  out.large_copy_gb_s = copy_gb_s(team, memory, std::size_t{128} << 20, 0.2);
-  out.gflop_s = gflop_s(team, multiply_add_floats, 16);
-  out.double_gflop_s = gflop_s(team, multiply_add_doubles, 8);
+  out.small_copy_gb_s = copy_gb_s(memory, std::size_t{16} << 20, 0.05);
+  out.large_copy_gb_s = copy_gb_s(memory, std::size_t{128} << 20, 0.2);
+  out.gflop_s = gflop_s(multiply_add_floats, 16);
+  out.double_gflop_s = gflop_s(multiply_add_doubles, 8);
   return out;
 }
 

@@ -1,11 +1,10 @@
 #pragma once
 #include <type_traits>
 
-/// Thread pool of the process, for loops whose tasks are shared (here) and for teams that work on one
-/// computation together (team.h).  It grows to the largest number of threads requested so far; idle threads
-/// sleep.  The assignment of tasks to threads is not deterministic: a loop gives bitwise the same numbers
-/// with any number of threads if its tasks write to disjoint memory and sums are formed afterwards, task by
-/// task.
+/// Thread pool of the process, for loops whose tasks are shared among threads.  It grows to the largest
+/// number of threads requested so far; idle threads sleep.  The assignment of tasks to threads is not
+/// deterministic: a loop gives bitwise the same numbers with any number of threads if its tasks write to
+/// disjoint memory and sums are formed afterwards, task by task.
 namespace palpate::workers {
 
 /// Sets the number of threads per loop, including the calling one, where no Count is in force; 1 at the
@@ -31,19 +30,25 @@ class Count {
 /// to run().
 using Task = void (*)(void* context, int task, int worker);
 
+/// Which task a thread takes next.
+enum class Order {
+  kAscending,     ///< the first one that no thread has taken
+  kFromBothEnds,  ///< the first one, threads with an odd index the last one: with two threads each one takes
+                  ///< nearly the same tasks in every loop, and finds their data in its cache
+};
+
 /// Runs task(context, t, w) for every t in [0, tasks), where w in [0, count()) is the index of the thread;
-/// returns when all are done.  With one thread, tasks run in ascending order.  Allocates nothing once the
-/// pool has its threads, which spin for some tens of microseconds after a loop, then sleep.  A nested loop,
-/// and a loop concurrent with one of another thread, runs on the calling thread alone, as w = 0.  Tasks must
-/// not throw.
-/// @param tasks  at most 2^20 - 1
+/// returns when all are done.  With one thread, tasks run in ascending order.  A thread without a processor
+/// delays the loop only if it has begun a task: all tasks that no other thread has begun are run by the
+/// calling one.  Allocates nothing once the pool has its threads, which spin for some tens of microseconds
+/// after a loop, then sleep.  A nested loop, and a loop concurrent with one of another thread, runs on the
+/// calling thread alone, as w = 0.  If tasks throw, the other tasks are run, and the exception of the first
+/// of them, by index, is thrown to the caller; a loop on one thread ends at it.
+/// @param tasks  at most 2^16 - 1
 /// @param task  may run on any thread
 /// @param context  passed to each task
-void run(int tasks, Task task, void* context);
-
-/// Runs task(context, k, w) for every k in [0, threads), each on a separate thread, so that tasks may wait
-/// for each other.  Blocks while another thread uses the pool.  Must not be called inside a task.
-void run_together(int threads, Task task, void* context);
+/// @param order  order of the tasks, with several threads
+void run(int tasks, Task task, void* context, Order order = Order::kAscending);
 
 /// Returns the number of tasks of shared loops that a thread has run since the process started; worker 0 is
 /// the calling thread.
@@ -51,11 +56,11 @@ long tasks_of(int worker);
 
 template <class F>
 /// Calls run() with a callable f(task, worker).
-void for_each(int tasks, F&& f) {
+void for_each(int tasks, F&& f, Order order = Order::kAscending) {
   using Function = std::remove_reference_t<F>;
   run(
       tasks, [](void* context, int task, int worker) { (*static_cast<Function*>(context))(task, worker); },
-      const_cast<std::remove_const_t<Function>*>(&f));
+      const_cast<std::remove_const_t<Function>*>(&f), order);
 }
 
 }  // namespace palpate::workers

@@ -1,55 +1,54 @@
 #pragma once
-#include <vector>
-
-#include "core/team.h"
 #include "linear/mixed_precision/node_order.h"
+#include "palpate/core/workers.h"
 
 namespace palpate::linear {
 
-/// Thread team over the parts of a NodeOrder; each thread works on a fixed range of parts. Sums are formed
-/// per part or per cluster and then in their order, so results do not depend on the number of threads.
+/// Threads that share loops over the parts of a NodeOrder. A part is a task, and each thread begins at its
+/// own end of the parts. Sums are formed per part or per cluster and then in their order, so results do not
+/// depend on the number of threads.
 class ClusterTeam {
  public:
-  explicit ClusterTeam(int threads) : team_(threads) {}
-  int size() const { return team_.size(); }
+  /// @param threads  number of threads, including the calling one
+  explicit ClusterTeam(int threads) : threads_(threads) {}
 
-  /// Distributes the parts over the threads, balanced by the number of blocks as far as whole parts allow.
-  /// @param row_start  First block of each row, in the order's numbering.
-  void share(const NodeOrder& order, const std::vector<int>& row_start);
-  /// Calls work(thread) on each thread.
+  /// Sets the order whose parts are shared; it must outlive this object.
+  void share(const NodeOrder& order) { order_ = &order; }
+  /// Calls work(part, first node, last node) for all parts.
   template <class Work>
-  void run(Work&& work) {
-    team_.run(work);
+  void for_each(Work&& work) const {
+    run([&](std::size_t p) { work(p, order_->first_node(p), order_->first_node(p + 1)); });
   }
-  /// Waits for all threads; inside run() only.
-  void barrier() { team_.barrier(); }
-  /// Calls work(part, first node, last node) for each part of a thread. Call inside run().
+  /// Calls work(cluster, first node, last node) for the clusters of all parts.
   template <class Work>
-  void over(int thread, Work&& work) const {
-    for (auto p = static_cast<std::size_t>(mine_[static_cast<std::size_t>(thread)]);
-         p < static_cast<std::size_t>(mine_[static_cast<std::size_t>(thread) + 1]); ++p)
-      work(p, order_->first_node(p), order_->first_node(p + 1));
+  void for_each_cluster(Work&& work) const {
+    run([&](std::size_t p) {
+      for (auto c = static_cast<std::size_t>(order_->part[p]);
+           c < static_cast<std::size_t>(order_->part[p + 1]); ++c)
+        work(c, order_->start[c], order_->start[c + 1]);
+    });
   }
-  /// Calls work(cluster, first node, last node) for each cluster of a thread's parts. Call inside run().
+  /// Calls work(first, last) for consecutive ranges that together are [0, count), as many as there are parts.
   template <class Work>
-  void over_clusters(int thread, Work&& work) const {
-    const auto cluster = [&](int t) {
-      return static_cast<std::size_t>(
-          order_->part[static_cast<std::size_t>(mine_[static_cast<std::size_t>(t)])]);
-    };
-    for (std::size_t c = cluster(thread); c < cluster(thread + 1); ++c)
-      work(c, order_->start[c], order_->start[c + 1]);
-  }
-  /// Calls work(part, first node, last node) for all parts, on all threads.
-  template <class Work>
-  void for_each(Work&& work) {
-    team_.run([&](int thread) { over(thread, work); });
+  void for_each_range(int count, Work&& work) const {
+    const int parts = order_->parts();
+    run([&](std::size_t p) {
+      const int k = static_cast<int>(p);
+      work(count * k / parts, count * (k + 1) / parts);
+    });
   }
 
  private:
-  Team team_;
+  template <class Work>
+  void run(Work&& work) const {
+    const workers::Count count(threads_);
+    workers::for_each(
+        order_->parts(), [&](int part, int) { work(static_cast<std::size_t>(part)); },
+        workers::Order::kFromBothEnds);
+  }
+
+  int threads_;
   const NodeOrder* order_ = nullptr;
-  std::vector<int> mine_;  ///< first part of each thread; threads + 1 entries
 };
 
 }  // namespace palpate::linear

@@ -18,7 +18,7 @@ double sum_of(const std::vector<double>& parts) {
 void SingleIteration::prepare() {
   for (Singles* v : {&d_, &r_, &z_, &p_, &q_})
     v->assign(4 * static_cast<std::size_t>(matrix_.nodes()) + kVectorTail, 0.0f);
-  bounds_.assign(static_cast<std::size_t>(team_.size()), {});
+  bound_ = {};
   partial_.assign(static_cast<std::size_t>(matrix_.order().clusters()), 0.0);
   partial_pq_.assign(static_cast<std::size_t>(matrix_.order().parts()), 0.0);
   y_.assign(static_cast<std::size_t>(clusters_.stride()), 0.0f);
@@ -30,14 +30,6 @@ void SingleIteration::clear_correction() {
   std::fill(d_.begin(), d_.end(), 0.0f);
   moved_ = false;
   last_length_ = 0.0f;
-}
-
-void SingleIteration::begin(double start) {
-  for (EnergyBound& bound : bounds_) bound.begin(start);
-}
-
-void SingleIteration::end() {
-  for (EnergyBound& bound : bounds_) bound.end();
 }
 
 void SingleIteration::restart() {
@@ -57,11 +49,12 @@ double SingleIteration::gather(std::size_t cluster) {
                      : 0.0;
 }
 
-void SingleIteration::coarse(int thread) {
+/// Computes the motions of the clusters, w = E^-1 y, row by row.
+void SingleIteration::coarse() {
   if (!coarse_on()) return;
-  const int size = clusters_.size(), threads = team_.size();
-  kernels_.dense(clusters_.inverse(), clusters_.stride(), y_.data(), w_.data(), size * thread / threads,
-                 size * (thread + 1) / threads);
+  team_.for_each_range(clusters_.size(), [&](int first, int last) {
+    kernels_.dense(clusters_.inverse(), clusters_.stride(), y_.data(), w_.data(), first, last);
+  });
 }
 
 /// Returns r . P^-1 r.
@@ -114,65 +107,47 @@ double SingleIteration::orthogonal_to_last() {
   return pq_ > 0.0 ? -zq / pq_ : 0.0;
 }
 
-SolveStatus SingleIteration::reduce(double& rho_in_out, double beta, double spent, double unit, double rtol,
+// Each pass over the nodes is a shared loop; sums and decisions are the calling thread's.
+SolveStatus SingleIteration::reduce(double& rho, double beta, double spent, double unit, double rtol,
                                     int left, int& steps) {
-  SolveStatus status = SolveStatus::kOk;
-  const double rho_start = rho_in_out;
   const bool follows = pq_ > 0.0;  // there is a direction from before
-  team_.run([&](int t) {
-    EnergyBound& bound = bounds_[static_cast<std::size_t>(t)];
-    double rho = rho_start, b = beta;
-    float a = 0.0f;  // length of the last step, which is applied when its direction is read for the next one
-    for (int k = 1;; ++k) {
-      const bool first_one = k == 1 && !follows;
-      const auto share = static_cast<float>(b);
-      team_.over_clusters(t, [&](std::size_t c, int from, int to) {
-        over_motions(c, from, to, [&](const float* arm, const float* motion, int first, int last) {
-          if (first_one)
-            kernels_.first_direction(z_.data(), arm, motion, d_.data(), p_.data(), first, last);
-          else
-            kernels_.direction(a, share, z_.data(), arm, motion, d_.data(), p_.data(), first, last);
-        });
-      });
-      team_.barrier();
-      team_.over(t, [&](std::size_t part, int, int) {
-        partial_pq_[part] = matrix_.product(part, p_.data(), q_.data());
-      });
-      team_.barrier();
-      const double pq = sum_of(partial_pq_);
-      const bool bad = !(pq > 0.0) || !std::isfinite(pq);
-      if (!bad) {
-        a = static_cast<float>(rho / pq);
-        team_.over_clusters(t, [&](std::size_t c, int first, int last) {
-          partial_[c] =
-              kernels_.update(a, q_.data(), matrix_.inverse(), r_.data(), z_.data(), first, last) + gather(c);
-        });
-        team_.barrier();
-        coarse(t);
-        if (coarse_on()) team_.barrier();
-        const double next = squared_residual();
-        bound.step(rho / pq, rho * unit, next * unit);
-        b = next / rho;
-        rho = next;
-      }
-      const bool end =
-          bad || !std::isfinite(rho) || reached(bound, rho * unit, rtol) || rho <= spent || k >= left;
-      if (!end) continue;
-      if (t == 0) {
-        steps = k;
-        rho_in_out = rho;
-        pq_ = pq;
-        moved_ = true;
-        last_length_ = a;
-        if (bad)
-          status = pq <= 0.0 ? SolveStatus::kIndefinite : SolveStatus::kNotConverged;
-        else if (!std::isfinite(rho) || (k >= left && !reached(bound, rho * unit, rtol)))
-          status = SolveStatus::kNotConverged;
-      }
-      return;
-    }
+  last_length_ = 0.0f;             // of a step, which is applied when its direction is read for the next one
+  for (steps = 1;; ++steps) {
+    step_direction(static_cast<float>(beta), steps == 1 && !follows);
+    team_.for_each(
+        [&](std::size_t part, int, int) { partial_pq_[part] = matrix_.product(part, p_.data(), q_.data()); });
+    pq_ = sum_of(partial_pq_);
+    moved_ = true;
+    if (!(pq_ > 0.0) || !std::isfinite(pq_))
+      return pq_ <= 0.0 ? SolveStatus::kIndefinite : SolveStatus::kNotConverged;
+    last_length_ = static_cast<float>(rho / pq_);
+    team_.for_each_cluster([&](std::size_t c, int first, int last) {
+      partial_[c] =
+          kernels_.update(last_length_, q_.data(), matrix_.inverse(), r_.data(), z_.data(), first, last) +
+          gather(c);
+    });
+    coarse();
+    const double next = squared_residual();
+    bound_.step(rho / pq_, rho * unit, next * unit);
+    beta = next / rho;
+    rho = next;
+    if (!std::isfinite(rho)) return SolveStatus::kNotConverged;
+    if (reached(rho * unit, rtol)) return SolveStatus::kOk;
+    if (steps >= left) return SolveStatus::kNotConverged;
+    if (rho <= spent) return SolveStatus::kOk;
+  }
+}
+
+/// d += (last length) p, p = z + beta p; p = z for the first direction.
+void SingleIteration::step_direction(float beta, bool first_one) {
+  team_.for_each_cluster([&](std::size_t c, int from, int to) {
+    over_motions(c, from, to, [&](const float* arm, const float* motion, int first, int last) {
+      if (first_one)
+        kernels_.first_direction(z_.data(), arm, motion, d_.data(), p_.data(), first, last);
+      else
+        kernels_.direction(last_length_, beta, z_.data(), arm, motion, d_.data(), p_.data(), first, last);
+    });
   });
-  return status;
 }
 
 }  // namespace palpate::linear

@@ -29,24 +29,26 @@ class SingleIteration {
   void clear_correction();
 
   /// Begins the error bound of a new solve. `start` as in EnergyBound::begin.
-  void begin(double start);
+  void begin(double start) { bound_.begin(start); }
   /// Ends the error bound of a solve.
-  void end();
-  bool first() const { return bounds_[0].first(); }
+  void end() { bound_.end(); }
+  bool first() const { return bound_.first(); }
   /// Whether the error is below rtol of the solution's lower bound, or otherwise allowed, for rho = r . P^-1
   /// r in units of the matrix.
-  bool reached(double rho, double rtol) const { return reached(bounds_[0], rho, rtol); }
+  bool reached(double rho, double rtol) const {
+    return bound_.error(rho) <= std::max(requested(rtol), share_ * share_ * bound_.gained()) && rho <= floor_;
+  }
   /// Upper bound of the squared error of the solution, and lower bound of the squared solution, both in the
   /// energy norm, for rho in units of the matrix.
-  double error(double rho) const { return bounds_[0].error(rho); }
-  double solution() const { return bounds_[0].solution(); }
+  double error(double rho) const { return bound_.error(rho); }
+  double solution() const { return bound_.solution(); }
   /// Also accepts an error whose square is at most this.
   void allow(double square) { allowed_ = square; }
   /// Also accepts an error of at most this fraction of the distance from the start of the solve.
   void allow_share(double share) { share_ = share; }
   /// Whether the error is below rtol of the solution or allowed by allow(); allow_share() is ignored.
   bool accurate(double rho, double rtol) const {
-    return bounds_[0].error(rho) <= requested(bounds_[0], rtol) && rho <= floor_;
+    return bound_.error(rho) <= requested(rtol) && rho <= floor_;
   }
   /// Sets an upper limit of rho at the end, in addition to the error bound.
   void set_floor(double rho) { floor_ = rho; }
@@ -55,14 +57,11 @@ class SingleIteration {
   /// returns r . z.
   template <class Set>
   double precondition(Set&& set_residual) {
-    team_.run([&](int thread) {
-      team_.over_clusters(thread, [&](std::size_t cluster, int first, int last) {
-        set_residual(first, last);
-        precondition(cluster, first, last);
-      });
-      team_.barrier();
-      coarse(thread);
+    team_.for_each_cluster([&](std::size_t cluster, int first, int last) {
+      set_residual(first, last);
+      precondition(cluster, first, last);
     });
+    coarse();
     return squared_residual();
   }
   /// Discards the last direction and the correction.
@@ -85,18 +84,13 @@ class SingleIteration {
   double orthogonal_to_last();
 
  private:
-  bool reached(const EnergyBound& bound, double rho, double rtol) const {
-    return bound.error(rho) <= std::max(requested(bound, rtol), share_ * share_ * bound.gained()) &&
-           rho <= floor_;
-  }
-  double requested(const EnergyBound& bound, double rtol) const {
-    return std::max(rtol * rtol * bound.solution(), allowed_);
-  }
+  double requested(double rtol) const { return std::max(rtol * rtol * bound_.solution(), allowed_); }
   bool coarse_on() const { return clusters_.ready(); }
   void precondition(std::size_t cluster, int first, int last);
   double gather(std::size_t cluster);
-  void coarse(int thread);
+  void coarse();
   double squared_residual() const;
+  void step_direction(float beta, bool first_one);
   template <class Follow>
   void over_motions(std::size_t cluster, int first, int last, Follow&& follow) const;
 
@@ -110,8 +104,7 @@ class SingleIteration {
   double pq_ = 0.0, floor_ = 0.0, allowed_ = 0.0, share_ = 0.0;
   bool moved_ = false;        ///< d_ + last_length_ p_ is the correction found
   float last_length_ = 0.0f;  ///< length of the last step, not yet in d_
-  /// Error bounds, one per thread with identical contents: each thread decides without synchronisation.
-  std::vector<EnergyBound> bounds_;
+  EnergyBound bound_;
   std::vector<double> partial_, partial_pq_;  ///< sums per cluster and per part
 };
 

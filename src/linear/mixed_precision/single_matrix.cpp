@@ -81,7 +81,7 @@ void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, const NodeOrder
   trace_.assign(parts, 0.0);
   mass_trace_ = trace_;
   held_.clear();
-  team_.share(order_, row_start_);
+  team_.share(order_);
 }
 
 SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, Singles* from, Singles* to) {
