@@ -28,7 +28,7 @@ thread_local bool t_in_loop = false;  ///< This thread runs a task.
 /// Time after which a helper lets others run, between two tasks [ns]: shorter than a time slice, at whose end
 /// it would lose its processor with a task begun, and the caller would wait for it.
 constexpr std::int64_t kTurnNs = 500'000;
-/// Least time between two moves of a helper away from the caller's processor [ns].
+/// Least time between two moves of the helpers away from the caller's processor [ns].
 constexpr std::int64_t kBetweenMovesNs = 2'000'000;
 
 // Protocol.  A loop is one word, `ticket_`: its number (32 bits), and the end and the begin (16 bits each) of
@@ -74,6 +74,7 @@ class Pool {
  private:
   int size() const { return size_.load(std::memory_order_relaxed); }
   void grow_locked(int count) {
+    if (size() == 1 && count > 1) pthread_getaffinity_np(pthread_self(), sizeof allowed_, &allowed_);
     for (int worker = size(); worker < count; ++worker) {
       try {
         threads_.emplace_back([this, worker] { serve(worker); });
@@ -100,7 +101,7 @@ class Pool {
     tasks_.store(tasks, std::memory_order_relaxed);
     both_ends_.store(order == Order::kFromBothEnds, std::memory_order_relaxed);
     done_.store(0, std::memory_order_relaxed);
-    processor_of_caller_.store(sched_getcpu(), std::memory_order_relaxed);
+    keep_helpers_away(threads);
     threads_of_loop_.store(threads);
     ticket_.store((++loops_ << (2 * kBits)) | (static_cast<std::uint64_t>(tasks) << kBits));
     ++wake_;
@@ -109,6 +110,26 @@ class Pool {
     if (!spin_until([&] { return done_.load() == tasks; }, processor_of_helper_))
       for (int done = done_.load(); done != tasks; done = done_.load()) done_.wait(done);
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  }
+
+  /// Excludes the caller's processor from those of the helpers.  Linux may wake a helper on it although
+  /// others are idle, and leave both there for many time slices: two threads then took turns on one
+  /// processor.
+  void keep_helpers_away(int threads) {
+    const int here = sched_getcpu();
+    processor_of_caller_.store(here, std::memory_order_relaxed);
+    const bool all_placed = placed_ >= threads;
+    if (here == avoided_ && all_placed) return;
+    const std::int64_t now = monotonic_ns();
+    if (all_placed && now < placed_ns_ + kBetweenMovesNs) return;
+    cpu_set_t others = allowed_;
+    if (here >= 0) CPU_CLR(static_cast<std::size_t>(here), &others);
+    for (int k = 1; k < threads; ++k)
+      pthread_setaffinity_np(threads_[static_cast<std::size_t>(k) - 1].native_handle(), sizeof others,
+                             CPU_COUNT(&others) > 0 ? &others : &allowed_);
+    avoided_ = here;
+    placed_ = threads;
+    placed_ns_ = now;
   }
 
   /// Takes tasks until none is left; returns at once where the loop uses fewer threads.
@@ -155,31 +176,13 @@ class Pool {
     }
   }
 
-  /// Moves the calling thread to another processor, which Linux may do only after some time slices.
-  /// Afterwards it may use all of its processors again.
-  static void leave_processor(int taken) {
-    thread_local std::int64_t since = 0;
-    if (sched_getcpu() != taken || monotonic_ns() < since + kBetweenMovesNs) return;
-    cpu_set_t all;
-    if (sched_getaffinity(0, sizeof all, &all) != 0) return;
-    cpu_set_t others = all;
-    CPU_CLR(static_cast<std::size_t>(taken), &others);
-    if (CPU_COUNT(&others) == 0) return;
-    if (sched_setaffinity(0, sizeof others, &others) == 0) sched_setaffinity(0, sizeof all, &all);
-    since = monotonic_ns();
-  }
-
   void serve(int worker) {
     while (true) {
       const unsigned seen = wake_.load();
       if (stopping_.load()) return;
       take(worker);
       const auto woken = [&] { return wake_.load() != seen; };
-      if (worker < threads_of_loop_.load()) {
-        if (spin_until(woken, processor_of_caller_)) continue;
-        leave_processor(processor_of_caller_.load(std::memory_order_relaxed));
-      }
-      wake_.wait(seen);
+      if (worker >= threads_of_loop_.load() || !spin_until(woken, processor_of_caller_)) wake_.wait(seen);
     }
   }
 
@@ -203,6 +206,9 @@ class Pool {
   std::atomic<bool> both_ends_{false};
   std::atomic<int> processor_of_caller_{-1};  ///< when it opened the last loop
   std::atomic<int> processor_of_helper_{-1};  ///< when the last task of a helper began
+  cpu_set_t allowed_{};                       ///< processors of the thread that created the first helper
+  int avoided_ = -1, placed_ = 1;  ///< the helpers below `placed_` may use all of these but `avoided_`
+  std::int64_t placed_ns_ = 0;
   std::uint64_t loops_ = 0;
   std::mutex failing_;
   std::exception_ptr failure_;  ///< of the loop's first task that threw
