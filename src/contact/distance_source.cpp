@@ -108,7 +108,7 @@ class DistanceSource final : public SampleSource {
     safe_time_ = HUGE_VAL;
     const double speed = (of_a.velocity - of_b.velocity).norm() + of_a.spread + of_b.spread;
     for (const distance::Spring& spring : contact_.springs()) {
-      const Pair pair = pair_of(spring);
+      const Pair pair = pair_of(spring, contact_.position(spring), contact_.outward(spring));
       samples.push_back(sample_of(spring, pair));
       points_.push_back(spring.side == 0 ? spring.point
                                          : spring.point + static_cast<int>(contact_.points(0).size()));
@@ -128,17 +128,15 @@ class DistanceSource final : public SampleSource {
     if (samples.empty()) return;
     update(state);
     contact_.follow(carrying(0), carrying(1));
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (!springs[i].is_placed) {
-        samples[i].area = 0.0;  // The points are not nearest points at this state: no force.
-        continue;
-      }
-      Pair pair = pair_of(springs[i]);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (!springs[i].is_placed) samples[i].area = 0.0;  // Not a nearest point at this state: no force.
+    contact_.for_each_placed([&](std::size_t i, const Vec3& x, const Vec3& outward) {
+      Pair pair = pair_of(springs[i], x, outward);
       if (coupled_.are_soft()) keep_in_pattern(joints_[i], pair);
       const int source = samples[i].source;
       samples[i] = sample_of(springs[i], pair);
       samples[i].source = source;
-    }
+    });
   }
 
   void add_pattern(dynamics::PatternBuilder& pattern) const override { coupled_.add_pattern(pattern); }
@@ -211,11 +209,11 @@ class DistanceSource final : public SampleSource {
     CarriedPoint a, b;
     Vec3 at_a, at_b, normal;
   };
-  Pair pair_of(const distance::Spring& spring) const {
+  /// @param x  the spring's point [m]  @param out  outward direction of the other side at its foot
+  Pair pair_of(const distance::Spring& spring, const Vec3& x, const Vec3& out) const {
     const distance::ContactPoint& point =
         contact_.points(spring.side)[static_cast<std::size_t>(spring.point)];
-    const Vec3 x = contact_.position(spring), y = x + spring.reach;
-    const Vec3 out = contact_.outward(spring);  // Outward direction of b for a point of a.
+    const Vec3 y = x + spring.reach;
     Pair pair;
     const bool is_of_a = spring.side == 0;
     pair.normal = is_of_a ? out : Vec3(-out);

@@ -34,10 +34,9 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, double stiffness, std::ar
       stiffness_(!own_ && (meshes[0].points.empty() || meshes[1].points.empty()) ? stiffness
                                                                                  : 0.5 * stiffness),
       surfaces_{Surface(a), Surface(b)},
-      meshes_(std::move(meshes)),
-      scratch_(std::make_unique<Scratch>()) {
+      meshes_(std::move(meshes)) {
   if (!(stiffness > 0.0)) fail("contact stiffness = {} Pa/m must be positive", stiffness);
-  std::size_t count = 0, triangles = 0, most_packets = 1;
+  std::size_t count = 0, triangles = 0, clusters_in_all = 0;
   for (int side = 0; side < 2; ++side) {
     const Skin& skin = surfaces_[side].skin();
     const auto clusters = static_cast<std::size_t>(skin.cluster_count());
@@ -50,7 +49,7 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, double stiffness, std::ar
     first_packet_[side] = {0};
     for (std::size_t c = 1; c <= clusters; ++c) {
       const int packets = (cluster_points_[side][c] + kPacket - 1) / kPacket;
-      most_packets = std::max(most_packets, static_cast<std::size_t>(packets));
+      most_packets_ = std::max(most_packets_, static_cast<std::size_t>(packets));
       first_packet_[side].push_back(first_packet_[side].back() + packets);
       cluster_points_[side][c] += cluster_points_[side][c - 1];
     }
@@ -63,7 +62,7 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, double stiffness, std::ar
     whole_.reserve(std::max(whole_.capacity(), clusters));
     joined_.reserve(whole_.capacity());
     packets_clear_[side].assign(static_cast<std::size_t>(first_packet_[side].back()), -1.0);
-    searches_[side] = std::make_unique<LaneSearch>(surfaces_[side]);
+    clusters_in_all = std::max(clusters_in_all, clusters);
     count += points(side).size();
     triangles += mesh.triangles.size();
     spring_of_[side].assign(points(side).size(), -1);
@@ -77,8 +76,9 @@ SkinContact::SkinContact(const Skin& a, const Skin& b, double stiffness, std::ar
   added_.reserve(count);
   triangles_.reserve(triangles);
   missing_.reserve(3 * triangles);
-  scratch_->packets.resize(most_packets);
-  scratch_->open.reserve(most_packets);
+  packets_.reserve(3 * triangles);
+  cluster_searches_.reserve(clusters_in_all);
+  fit_searchers();
 }
 
 SkinContact::~SkinContact() = default;
@@ -101,10 +101,10 @@ void SkinContact::set_foot(Spring& spring, const Foot& foot, bool is_inside) con
   spring.is_placed = true;
 }
 
-void SkinContact::add_spring(int side, int point, const Foot& foot, bool is_inside) {
-  spring_of_[side][static_cast<std::size_t>(point)] = static_cast<int>(springs_.size());
-  springs_.push_back({.side = side, .point = point});
-  set_foot(springs_.back(), foot, is_inside);
+void SkinContact::add_spring(int side, int point, const Foot& foot, bool is_inside,
+                             std::vector<Spring>& out) const {
+  out.push_back({.side = side, .point = point});
+  set_foot(out.back(), foot, is_inside);
 }
 
 // Collects all triangles that have a spring, and adds a spring at each of their corners; corners too far
@@ -114,6 +114,8 @@ void SkinContact::find_triangles() {
   triangles_.clear();
   added_.clear();
   const std::size_t found = springs_.size();
+  for (std::size_t i = 0; i < found; ++i)
+    spring_of_[springs_[i].side][static_cast<std::size_t>(springs_[i].point)] = static_cast<int>(i);
   for (std::size_t begin = 0, end = 0; begin < found; begin = end) {
     const int side = springs_[begin].side;
     const ContactMesh& mesh = meshes_[static_cast<std::size_t>(side)];
@@ -206,9 +208,9 @@ void SkinContact::integrate() {
 // The relative rounding error of a direction between two points is the unit in the last place of their
 // coordinates divided by their distance: 2e-7 at the distance below which the pseudonormal is used, where the
 // force of the spring is negligible.
-Vec3 SkinContact::outward(const Spring& spring) const {
+Vec3 SkinContact::outward(const Spring& spring) const { return outward(surfaces_[1 - spring.side], spring); }
+Vec3 SkinContact::outward(const Surface& other, const Spring& spring) const {
   constexpr double kCoincide = 1e-9;  // Relative to the coordinates.
-  const Surface& other = surfaces_[1 - spring.side];
   const double size =
       std::max(other.bound().min().cwiseAbs().maxCoeff(), other.bound().max().cwiseAbs().maxCoeff());
   if (std::abs(spring.gap) > kCoincide * size) return -spring.reach / spring.gap;

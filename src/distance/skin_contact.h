@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "distance/own_neighbourhood.h"
@@ -12,8 +13,6 @@
 #include "distance/surface.h"
 
 namespace palpate::distance {
-
-class LaneSearch;
 
 /// Parameters of the contact between two skins, fixed at assembly.
 struct SkinContactSpec {
@@ -104,8 +103,10 @@ struct Resultant {
 /// stiffness, and the nearest point is searched only among clusters that are not neighbours of the point's
 /// cluster (OwnContact).
 ///
-/// All results are a function of the positions in the last find(), bitwise, independent of earlier queries.
-/// Sums are evaluated in a fixed order; nothing is allocated after construction.
+/// All results are a function of the positions in the last find(), bitwise, independent of earlier queries
+/// and of the number of threads. Sums are evaluated in a fixed order. Nothing is allocated after
+/// construction, except when a query first runs on more threads than workers::count() was then. Two skins are
+/// searched by workers::count() threads, self-contact by one.
 class SkinContact {
  public:
   /// Creates the contact with points at the spacing of `spec`.
@@ -149,6 +150,15 @@ class SkinContact {
   /// Returns whether two clusters may come into self-contact. @pre the contact is self-contact
   bool may_touch(int cluster, int other) const { return own_->neighbours.may_touch(cluster, other); }
   Vec3 position(const Spring& spring) const;  ///< Position of its point [m].
+  /// Calls visit(index, position(), outward()) for all springs that are placed, on workers::count() threads;
+  /// visit may be called by several threads at once.
+  template <class Visit>
+  void for_each_placed(Visit&& visit) {
+    using V = std::remove_reference_t<Visit>;
+    visit_placed(
+        [](void* to, std::size_t i, const Vec3& x, const Vec3& out) { (*static_cast<V*>(to))(i, x, out); },
+        &visit);
+  }
   /// Returns the unit outward direction of the other skin at the spring's foot: away from the nearest point
   /// if the point is outside, towards it if inside, and the pseudonormal of Surface::outward() where the two
   /// coincide.
@@ -174,6 +184,16 @@ class SkinContact {
   SkinContact(const Skin& a, const Skin& b, double stiffness, std::array<ContactMesh, 2> meshes,
               std::optional<OwnContact> own);
   static constexpr int kPacket = 16;  ///< Number of points that are searched together.
+  struct Searcher;
+  /// Points of one cluster that are updated together: range of `missing_`.
+  struct PacketRange {
+    std::size_t begin, end;
+  };
+  /// Springs that a thread found for one cluster: range of its Searcher::found.
+  struct ClusterSearch {
+    int cluster, worker;
+    std::size_t begin, end;
+  };
 
   void move(const double* nodes_a, const double* nodes_b, Surface::Tree tree);
   bool is_searchable() const;
@@ -191,7 +211,12 @@ class SkinContact {
   void mark_near_itself();
   bool may_come_near(const ContactPoint& point, const Foot& foot) const;
   void follow_packets(const std::vector<std::size_t>& springs);
-  void follow_packet(std::span<const std::size_t> springs);
+  void follow_packet(Searcher& by, std::span<const std::size_t> springs);
+  void visit_placed(void (*visit)(void* to, std::size_t i, const Vec3& x, const Vec3& out), void* to);
+  void begin_search(int side, const Vec3& origin, const Eigen::AlignedBox3d& box);
+  void fit_searchers();
+  Searcher& searcher(int worker);
+  void search_clusters(int side, double near);
   void find_side_by_reference(int side);
   struct Part {
     int cluster, tree_node;
@@ -200,10 +225,12 @@ class SkinContact {
   double gap_of(int side, const Eigen::AlignedBox3d& box, double near, int& near_leaf) const;
   const OwnNeighbourhood* neighbours() const { return own_ ? &own_->neighbours : nullptr; }
   bool overlaps(const ContactPoint& point, const Vec3& x, const Foot& foot) const;
-  int find_cluster(int side, int cluster, int start, double near);
-  void add_spring(int side, int point, const Foot& foot, bool is_inside);
+  int find_cluster(Searcher& by, int side, int cluster, int start, double near, std::vector<Spring>& out);
+  void add_spring(int side, int point, const Foot& foot, bool is_inside, std::vector<Spring>& out) const;
   void set_foot(Spring& spring, const Foot& foot, bool is_inside) const;
   Vec3 position(int side, const ContactPoint& point) const;
+  Vec3 position(const Searcher& by, int side, int point) const;
+  Vec3 outward(const Surface& other, const Spring& spring) const;
   void add_to_vertices(const Spring& spring, const Vec3& force);
   void add_to_nodes(double* nodes_a, double* nodes_b);
 
@@ -227,11 +254,27 @@ class SkinContact {
   std::vector<char> is_near_[2];   ///< Marks the triangles of `triangles_` while they are collected.
 
   // Bounds on the search. They affect its cost and do not change its result.
-  std::unique_ptr<LaneSearch> searches_[2];  ///< Search for nearest points on each skin.
+  /// One per thread, the first one of the calling thread.
+  std::vector<std::unique_ptr<Searcher>> searchers_;
+  /// Inputs of the last search on each skin, for the other threads.
+  struct Query {
+    Vec3 origin = Vec3::Zero();
+    Eigen::AlignedBox3d box;
+    long number = 0;
+  };
+  Query queries_[2];
+  /// Inputs of the last move(), for the other threads: nodes of both skins, number of moves, and of those
+  /// that fitted the trees.
+  struct Positions {
+    const double* nodes[2] = {nullptr, nullptr};
+    long moved = 0, fitted = 0;
+  };
+  Positions positions_;
   std::vector<int> starts_[2];  ///< Face found near each cluster in an earlier query: initial guess.
   /// Nearest faces of each packet in the last query, padded with -1.
   std::vector<std::array<int, kPacket>> feet_[2];
   std::vector<int> first_packet_[2];  ///< First packet per cluster, and the number of all packets at the end.
+  std::size_t most_packets_ = 1;      ///< Largest number of packets per cluster.
   double travelled_ = 0.0;        ///< Upper bound on the accumulated relative displacement of the skins [m].
   std::vector<double> clear_[2];  ///< Value of `travelled_` up to which each cluster is known to lie outside.
   /// Value of `travelled_` up to which each packet is known to lie outside.
@@ -239,12 +282,12 @@ class SkinContact {
   /// Location of a cluster. kWhole: entirely inside or entirely outside, not yet known which; kNear: close to
   /// the other skin's surface.
   enum class SideOfSurface : char { kOutside, kInside, kWhole, kNear };
-  std::vector<SideOfSurface> where_[2];  ///< Location per cluster.
-  std::vector<Part> whole_;              ///< Clusters that do not come near the other skin's surface.
-  std::vector<int> joined_;              ///< Queue of connected clusters in settle().
-  std::vector<std::size_t> missing_;     ///< Springs whose feet are to be updated, ascending.
-  struct Scratch;
-  std::unique_ptr<Scratch> scratch_;
+  std::vector<SideOfSurface> where_[2];          ///< Location per cluster.
+  std::vector<Part> whole_;                      ///< Clusters that do not come near the other skin's surface.
+  std::vector<int> joined_;                      ///< Queue of connected clusters in settle().
+  std::vector<std::size_t> missing_;             ///< Springs whose feet are to be updated, ascending.
+  std::vector<PacketRange> packets_;             ///< Packets of `missing_`.
+  std::vector<ClusterSearch> cluster_searches_;  ///< Clusters of a side that are searched, ascending.
 
   struct VertexForces {
     Points sum;  ///< Force per vertex; zero between calls.

@@ -48,7 +48,7 @@ void SkinContact::find_clusters_of_own(double near) {
   const std::vector<SideOfSurface>& where = where_[0];
   for (std::size_t c = 0; c < where.size(); ++c)
     if (where[c] == SideOfSurface::kNear && clear_[0][c] < travelled_ + near)
-      find_cluster(0, static_cast<int>(c), -1, near);
+      find_cluster(*searchers_.front(), 0, static_cast<int>(c), -1, near, springs_);
 }
 
 /// Marks the clusters that are within the depth of overlaps of another cluster that they may touch. All
