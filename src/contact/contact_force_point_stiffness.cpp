@@ -44,10 +44,25 @@ void ContactForce::add_step_force(const dynamics::StateView& state, const VecX& 
                                   VecX& f) {
   Impl& m = *impl_;
   m.place_frames(state);
-  m.add_forces(state, f);
   m.product.setZero(f.size());
-  m.apply_tangents(state, 1.0, 0.0, shift, m.product);
-  m.apply_tangents(state, 0.0, 1.0, change, m.product);
+  if (!m.bonds.empty()) {
+    m.bonds.add_force(state, m.frame_states, m.rows_of_frames(), f);
+    m.bonds.apply_tangent(state, m.frame_states, 1.0, 0.0, shift, m.product);
+    m.bonds.apply_tangent(state, m.frame_states, 0.0, 1.0, change, m.product);
+  }
+  const auto row = [&](const SurfacePoint& p) {
+    return p.frame >= 0 ? m.frame_states[static_cast<std::size_t>(p.frame)].u_offset : -1;
+  };
+  const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+    const SampleForce force = m.tangent_of(s, motion, law, law.symmetric_tangent);
+    const Side a(s.a, motion.a, m.frame_states, 1.0, force.force),
+        b(s.b, motion.b, m.frame_states, -1.0, force.force);
+    add_point_force(s.a, motion.a.arm, force.force, row(s.a), f);
+    add_point_force(s.b, motion.b.arm, -force.force, row(s.b), f);
+    apply_sample_tangent(a, b, force, 1.0, 0.0, shift, m.product);
+    apply_sample_tangent(a, b, force, 0.0, 1.0, change, m.product);
+  };
+  m.visit_active(state, Impl::Which::kOfState, add);
   f -= m.product;
   m.linearise_friction(state);
 }
