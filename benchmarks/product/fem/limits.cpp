@@ -144,7 +144,7 @@ double MachineLimits::write_gb_s(double working_set) const {
 }
 
 MachineLimits measure_limits(int threads) {
-  const workers::Count count(threads);
+  const workers::Count of_threads(threads);
   MachineLimits out;
   out.threads = threads;
   std::vector<double> memory(kLargest / sizeof(double), 1.0), sums(static_cast<std::size_t>(threads));
