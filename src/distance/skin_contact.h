@@ -189,9 +189,10 @@ class SkinContact {
   struct PacketRange {
     std::size_t begin, end;
   };
-  /// Springs that a thread found for one cluster: range of its Searcher::found.
+  /// Search for one cluster: initial guess of a near face, and the springs found by a thread, range of its
+  /// Searcher::found.
   struct ClusterSearch {
-    int cluster, worker;
+    int cluster, guess, worker;
     std::size_t begin, end;
   };
 

@@ -157,13 +157,17 @@ void SkinContact::visit_placed(void (*visit)(void* to, std::size_t i, const Vec3
 void SkinContact::search_clusters(int side, double near) {
   cluster_searches_.clear();
   const std::vector<SideOfSurface>& where = where_[side];
-  for (std::size_t c = 0; c < where.size(); ++c)
-    if (where[c] != SideOfSurface::kOutside) cluster_searches_.push_back({static_cast<int>(c), 0, 0, 0});
+  int guess = 0;  // face near this cluster, or else near one before it, in an earlier query
+  for (std::size_t c = 0; c < where.size(); ++c) {
+    if (where[c] == SideOfSurface::kOutside) continue;
+    if (const int start = starts_[side][c]; start >= 0) guess = start;
+    cluster_searches_.push_back({static_cast<int>(c), guess, 0, 0, 0});
+  }
   fit_searchers();
   for (const auto& by : searchers_) by->found.clear();
   share(static_cast<int>(cluster_searches_.size()), kClustersInTask, [&](int first, int last, int worker) {
     Searcher& by = searcher(worker);
-    int before = 0;  // face near the cluster before
+    int before = cluster_searches_[static_cast<std::size_t>(first)].guess;
     for (int k = first; k < last; ++k) {
       ClusterSearch& search = cluster_searches_[static_cast<std::size_t>(k)];
       int& start = starts_[side][static_cast<std::size_t>(search.cluster)];
