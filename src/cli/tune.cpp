@@ -50,9 +50,9 @@ bool libraries_load(char** argv, char** envp) {
   const pid_t child = ::fork();
   if (child < 0) return true;  // no process available: the libraries may load all the same
   if (child == 0) {
-    const rlimit no_core{0, 0}, two_seconds{2, 2};
+    const rlimit no_core{0, 0}, one_second{1, 1};
     ::setrlimit(RLIMIT_CORE, &no_core);
-    ::setrlimit(RLIMIT_CPU, &two_seconds);
+    ::setrlimit(RLIMIT_CPU, &one_second);
     constexpr unsigned kLongestWait = 60;
     ::alarm(kLongestWait);
     ::execve("/proc/self/exe", argv, envp);
