@@ -184,12 +184,14 @@ class Touch(unittest.TestCase):
                         rotation=[1, 0, 0, 0])
             viewer.send(type="handle", hand=1, position=[0.0, 0.0, 0.5], rotation=[1, 0, 0, 0])  # not its own
             viewer.listen(0.01)
-        viewer.until(lambda: viewer.frames[-1]["hands"][1]["pose"][0] > -0.0365, 30)
+
+        def pressed():  # both handles have arrived, and the tools have followed them
+            first, second = viewer.frames[-1]["hands"]
+            return second["pose"][0] > -0.0365 and first["force"][0] > 0.2 > -0.2 > second["force"][0]
+        viewer.until(pressed, 30)
         first, second = viewer.frames[-1]["hands"]
         self.assertAlmostEqual(first["pose"][0], 0.036, delta=1e-3)
         self.assertAlmostEqual(second["pose"][2], 0.03, delta=1e-6)
-        self.assertGreater(first["force"][0], 0.2)
-        self.assertLess(second["force"][0], -0.2)
         self.assertLess(forces[-1][0], -0.2, "Python receives the force on its hand")
 
 
