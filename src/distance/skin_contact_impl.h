@@ -11,9 +11,9 @@ namespace palpate::distance {
 /// Relative margin of bounds, for the rounding of the few operations that produce them.
 inline constexpr double kMarginOfBounds = 1e-12;
 
-/// What a thread of a shared loop searches with. Surfaces evaluate vertices on demand, so each thread but the
-/// calling one has copies, which follow the nodes when that thread takes part; results are functions of the
-/// positions alone.
+/// Surfaces and searches that one thread of a shared loop uses. Surfaces evaluate vertices on demand, so each
+/// thread but the calling one has copies, which follow the nodes when that thread takes part; results are
+/// functions of the positions alone.
 struct SkinContact::Searcher {
   struct Copies {
     Surface of[2];

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kLoops = 2, kMostTasks = 2, kMostThreads = 3;
 
-/// What may be done wrongly, to show that the exploration notices.
+/// Fault of the protocol that the exploration has to notice.
 enum class Fault {
   kNone,
   kLooksBeforeItReadsWake,

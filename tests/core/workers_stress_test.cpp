@@ -135,7 +135,7 @@ TEST(WorkersStress, AllThreadsOnOneProcessor) {
   }
 }
 
-// Of two threads with a loop at a time, one runs it alone.
+// Where two threads begin loops at the same time, one of them runs its loop alone.
 TEST(WorkersStress, TwoCallersOnOneProcessor) {
   EXPECT_EQ(in_child([] {
               use_one_processor();
