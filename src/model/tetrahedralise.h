@@ -53,11 +53,11 @@ struct Tetrahedra {
 
 /// Fills a closed surface.  Delaunay refinement (Boissonnat and Oudot 2005; Jamin, Alliez, Yvinec and
 /// Boissonnat 2015) with a uniform bound on circumradii, which is searched for the target number; then
-/// vertices are moved to enlarge the smallest dihedral angles (Tournois, Srinivasan and Alliez 2009) and
-/// slivers are exuded by weights (Cheng et al. 2000).  One thread and fixed seeds: the same surface gives
-/// bitwise the same mesh. If the surface is too sharp or too thin for that, a least element size applies,
-/// tetrahedra at places where the boundary then touches itself are removed, and a note reports it: the
-/// refinement ends for every surface.
+/// vertices are moved to enlarge the smallest dihedral angles (Tournois, Srinivasan and Alliez 2009), again
+/// after Lloyd's method (Du and Wang 2003) if these stay below 4 degrees, and slivers are exuded by weights
+/// (Cheng et al. 2000).  One thread and fixed seeds: the same surface gives bitwise the same mesh. If the
+/// surface is too sharp or too thin for that, a least element size applies, tetrahedra at places where the
+/// boundary then touches itself are removed, and a note reports it: the refinement ends for every surface.
 /// @param surface  closed, outwards, without self-intersections (repair.h)
 /// @throws Error for a number that cannot be met, and beyond the limits
 Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& options,

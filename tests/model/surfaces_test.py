@@ -69,6 +69,9 @@ class Shapes(Models):
     def test_pumpkin(self):
         self.assertGreaterEqual(int(self.make("pumpkin")["tetrahedra"]), 10000)
 
+    def test_gear(self):
+        self.assertGreaterEqual(int(self.make("gear", dihedral=4.0)["tetrahedra"]), 20000)
+
 
 if __name__ == "__main__":
     unittest.main()
