@@ -11,7 +11,7 @@ clock   runs in real time: lateness, work, skipped ticks
 busy    the same while another process keeps one processor busy
 pairs   time of one step of two bodies in contact
 hand    a simulated hand that holds the device: force above 30 Hz, by stiffness of the coupling
-passive largest stiffness of the coupling that returns no energy to that hand
+passive friction of the device that makes small vibrations of the pressed tool passive, by frequency
 
 Without a name all are measured. Results are printed as tables in Markdown; FOLDER receives runs and chart.
 """
@@ -253,38 +253,78 @@ def hand(bench):
     table(["coupling [N/m]", "points", "frozen", "single rate, Euler", "single rate, BDF2"], rows)
 
 
-def returned_energy(bench, own, stiffness):
-    """Returns the least energy at the device's port over the run [J]: negative where the hand gets more than
-    it gave."""
-    changes = [*own, "device.type=hand", f"tool.coupling.stiffness_n_m={stiffness:g}",
-               f"tool.coupling.damping_n_s_m={math.sqrt(0.1 * stiffness):.3g}",  # half of critical
-               "device.max_force_n=1000", "record.states=false"]
-    figures = bench.run("touch-human", changes, "--passivity", "observe")
-    return figures["hands"][0]["port_least_energy_j"]
+def pressed(bench, scene):
+    """Returns the handle's path [m] up to the largest force, and the direction of that force."""
+    bench.run(scene, ["record.states=false", "device.max_force_n=1000"])
+    path, force = motion(bench.last)
+    at = numpy.argmax((force ** 2).sum(1))
+    return path[:at + 1], force[at] / numpy.linalg.norm(force[at])
+
+
+def motion(run):
+    rows = numpy.genfromtxt(run / "force.csv", delimiter=",", names=True)
+    return (numpy.stack([rows[f"handle_{axis}_m"] for axis in "xyz"], 1),
+            numpy.stack([rows[f"force_{axis}_n"] for axis in "xyz"], 1))
+
+
+PORT_HZ = numpy.array([11, 29, 64, 95, 152, 223, 331, 447])  # none mirrors another at a period of 10 ms
+
+
+def write_vibration(path, direction, file):
+    """Writes a recording: the path, one second of rest, then all frequencies, at 4 mm/s each.
+
+    @returns its duration [s]"""
+    k = numpy.arange(1, 5001)
+    phases = numpy.random.default_rng(1).uniform(0, 2 * math.pi, len(PORT_HZ))
+    way = sum(4e-3 / (2 * math.pi * f) * numpy.sin(2e-3 * math.pi * f * k + phase)
+              for f, phase in zip(PORT_HZ, phases))
+    way *= numpy.clip((k - 1000) / 500, 0, 1)
+    points = numpy.vstack([path, path[-1] + way[:, None] * direction])
+    with file.open("w") as out:
+        out.write("time_s,px_m,py_m,pz_m,qw,qx,qy,qz\n")
+        for i, p in enumerate(points):
+            out.write(f"{1e-3 * i:.3f},{p[0]:.17g},{p[1]:.17g},{p[2]:.17g},1,0,0,0\n")
+    return 1e-3 * (len(points) - 1)
+
+
+def needed_friction(run, direction):
+    """Returns the device's friction [N s/m] below which each vibration takes energy out of the loop.
+
+    With x_k = Re X e^(i k theta) and F = Z X, the held force gives the hand |X|^2 Re Z (e^(-i theta) - 1) / 2
+    per tick; friction b takes at least b |X|^2 (1 - cos theta) / T. Amplitudes by least squares, with a
+    quadratic for what has not come to rest."""
+    k = numpy.arange(-1000, 1000)
+    waves = [numpy.exp(2e-3j * math.pi * f * k) for f in PORT_HZ]
+    rest = [k ** 0, k / 1e3, (k / 1e3) ** 2]
+    basis = numpy.stack([*(w.real for w in waves), *(-w.imag for w in waves), *rest], 1)
+    n, (x, force) = len(PORT_HZ), (values[-2000:] @ direction for values in motion(run))
+    fit = [numpy.linalg.lstsq(basis, values, rcond=None)[0] for values in (x, force)]
+    ratio = (fit[1][:n] + 1j * fit[1][n:2 * n]) / (fit[0][:n] + 1j * fit[0][n:2 * n])
+    theta = 2e-3 * math.pi * PORT_HZ
+    return 1e-3 * (ratio * (numpy.exp(-1j * theta) - 1)).real / (2 * (1 - numpy.cos(theta)))
 
 
 def passive(bench):
-    """Bisects for the largest passive stiffness between 10 N/m and 1 MN/m, to 5 %."""
-    rows = []
-    for name, own in [("partitioned, points, 10 ms", []),
-                      ("partitioned, frozen, 10 ms", ["exchange.linearisation=frozen"]),
-                      ("partitioned, frozen, 1 ms", SCHEMES["partitioned, frozen, 1 ms"]),
-                      ("single rate, Euler", SINGLE), ("single rate, BDF2", BDF2)]:
-        low, high = 10.0, 1e6
-        if returned_energy(bench, own, low) < -PASSIVE_J:
-            rows.append([name, "none"])
-            continue
-        while high > 1.05 * low:
-            middle = math.sqrt(low * high)
-            if returned_energy(bench, own, middle) < -PASSIVE_J:
-                high = middle
-            else:
-                low = middle
-        rows.append([name, f"{low:.3g}"])
-    table(["scheme", "largest passive stiffness [N/m]"], rows)
-
-
-PASSIVE_J = 1e-6  # energy that a loop may return and count as passive
+    schemes = {"partitioned, points, 10 ms": [],
+               "partitioned, frozen, 10 ms": ["exchange.linearisation=frozen"],
+               "partitioned, frozen, 1 ms": SCHEMES["partitioned, frozen, 1 ms"],
+               "single rate, Euler": SINGLE, "single rate, BDF2": BDF2}
+    for scene in "touch-human", "touch-head":
+        path, direction = pressed(bench, scene)
+        recording = bench.folder / f"{scene}-vibration.csv"
+        duration = write_vibration(path, direction, recording)
+        rows = []
+        for stiffness in 1000, 10000:
+            for name, own in schemes.items():
+                bench.run(scene, [*own, "device.type=recording", f"device.file={recording.resolve()}",
+                                  f"tool.coupling.stiffness_n_m={stiffness}",
+                                  f"tool.coupling.damping_n_s_m={math.sqrt(0.1 * stiffness):.3g}",
+                                  "device.max_force_n=1000", f"scene.duration_s={duration:.3f}",
+                                  "record.states=false"])
+                needed = needed_friction(bench.last, direction)
+                rows.append([f"{stiffness}", name, *(f"{b:.3g}" for b in needed)])
+        print(f"\n{scene}: friction of the device [N s/m] that each frequency needs")
+        table(["coupling [N/m]", "scheme", *(f"{f} Hz" for f in PORT_HZ)], rows)
 
 
 def main():
