@@ -79,7 +79,7 @@ class Mesher : public CellMesher {
     return counted();
   }
 
-  // The perturber gives up at the first bound that it cannot reach, with CGAL 6.0 at 2 degrees on the gear of
+  // The perturber stops at the first bound that it cannot reach, with CGAL 6.0 at 2 degrees on the gear of
   // the paper's scenes, where 5.5 reaches 11 on nearly the same mesh.  If that is below any limit of the
   // gate, all vertices off the creases are moved towards the centroids of their Voronoi cells (Lloyd's
   // method; Du and Wang 2003), and the perturber starts again: 12 degrees there.
